@@ -1,0 +1,226 @@
+#include "error.hpp"
+#include "ground/builders.hpp"
+#include "ground/quality.hpp"
+#include "ground/sides.hpp"
+#include "ground/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+constexpr double most_cells = 20e6;
+constexpr int32_t most_rows = 100000;
+
+using Profile = std::vector<Place>;
+
+double elevation(const Profile& profile, double x) {
+    const auto right = std::upper_bound(profile.begin() + 1, profile.end() - 1, x, [](double at, const Place& p) { return at < p[0]; });
+    const Place& a = *(right - 1);
+    const Place& b = *right;
+    if (x <= a[0]) return a[1];
+    if (x >= b[0]) return b[1];
+    return a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+}
+
+// --- grid lines ------------------------------------------------------------------------------------------------------
+
+/// x of the vertical grid lines: every vertex of every profile, and equal columns between them.
+std::vector<double> grid_lines(const SectionGround& section, const std::vector<const Profile*>& profiles) {
+    const double left = section.terrain.front()[0];
+    const double right = section.terrain.back()[0];
+    const double near = 1e-9 * (right - left);
+    std::vector<double> vertices;
+    for (const Profile* profile : profiles) {
+        for (const Place& place : *profile) {
+            if (place[0] > left + near && place[0] < right - near) vertices.push_back(place[0]);
+        }
+    }
+    vertices.push_back(right);
+    std::sort(vertices.begin(), vertices.end());
+
+    std::vector<double> lines = {left};
+    for (const double vertex : vertices) {
+        const double from = lines.back();
+        if (vertex - from <= near) continue;
+        const double columns = std::ceil((vertex - from) / section.column_width - 1e-9);
+        if (!(columns < most_cells)) {
+            throw Error(Status::invalid_scene, "ground.section.columnWidth: " + number_text(section.column_width) + " m is too small for a section " +
+                                                   number_text(right - left) + " m wide");
+        }
+        const auto count = std::max(1, static_cast<int32_t>(columns));
+        for (int32_t i = 1; i < count; ++i) lines.push_back(from + (vertex - from) * i / count);
+        lines.push_back(vertex);
+    }
+    return lines;
+}
+
+/// Elevations of the layer boundaries on one grid line: terrain, layer tops, base.
+std::vector<double> interfaces_at(const std::vector<const Profile*>& profiles, double x, double height) {
+    const double near = 1e-9 * height;
+    std::vector<double> interface;
+    for (size_t k = 0; k < profiles.size(); ++k) {
+        double y = elevation(*profiles[k], x);
+        if (k > 0 && y > interface.back() - near) {
+            const bool base = k + 1 == profiles.size();
+            const std::string entry = base ? "ground.section.base" : "ground.section.layers[" + std::to_string(k) + "].top";
+            const std::string above = k == 1 ? "the terrain" : "the top of layers[" + std::to_string(k - 1) + "]";
+            if (y > interface.back() + near) {
+                throw Error(Status::invalid_scene, entry + ": at x = " + number_text(x) + " m it lies at " + number_text(y) + " m, above " + above +
+                                                       " (" + number_text(interface.back()) + " m); layers may touch but not cross");
+            }
+            y = interface.back();  // the layer above is pinched out here
+        }
+        interface.push_back(y);
+    }
+    if (!(interface.front() - interface.back() > near)) {
+        throw Error(Status::invalid_scene, "ground.section.base: at x = " + number_text(x) + " m it meets the terrain; the ground needs a thickness everywhere");
+    }
+    return interface;
+}
+
+// --- grading ---------------------------------------------------------------------------------------------------------
+
+/// Height of a cell whose top is at this depth. Below the graded depth cells grow by the ratio `growth`: with z the depth below
+/// it, h (growth + growth^2 + ... ) = z makes the next one growth h + (growth - 1) z.
+double cell_height(const SectionGround& section, double growth, double depth) {
+    const double surface_height = section.surface_cell_height;
+    const double below = depth - section.graded_depth;
+    if (below < -1e-9 * surface_height) return surface_height;
+    return std::min(section.largest_cell_height, growth * surface_height + (growth - 1) * std::max(0., below));
+}
+
+double depth_after(const SectionGround& section, double growth, double depth, int32_t rows) {
+    for (int32_t i = 0; i < rows; ++i) depth += cell_height(section, growth, depth);
+    return depth;
+}
+
+/// Rows that a layer needs between two depths for no cell to be higher than the grading says.
+int32_t rows_needed(const SectionGround& section, double top, double bottom, double x) {
+    const double near = 1e-6 * section.surface_cell_height;
+    int32_t rows = 0;
+    for (double depth = top; depth < bottom - near; ++rows) {
+        depth += cell_height(section, section.growth, depth);
+        if (rows < most_rows) continue;
+        throw Error(Status::invalid_scene, "ground.section.surfaceCellHeight: the column at x = " + number_text(x) + " m would have more than " +
+                                               std::to_string(most_rows) + " cells with cells of " +
+                                               number_text(section.surface_cell_height) + " m at the surface");
+    }
+    return rows;
+}
+
+/// The growth with which `rows` cells fill a layer, between 1 and the section's; the depth they reach increases with it.
+double fitting_growth(const SectionGround& section, double top, double bottom, int32_t rows) {
+    double low = 1;
+    double high = section.growth;
+    for (int32_t i = 0; i < 60; ++i) {
+        const double middle = (low + high) / 2;
+        (depth_after(section, middle, top, rows) < bottom ? low : high) = middle;
+    }
+    return high;
+}
+
+/// Depths of the row boundaries of one layer on one grid line, its top not included.
+void add_row_depths(const SectionGround& section, double top, double bottom, int32_t rows, std::vector<double>& depths) {
+    const double growth = fitting_growth(section, top, bottom, rows);
+    const double stretch = (bottom - top) / (depth_after(section, growth, top, rows) - top);  // below 1 where even cells are too many
+    double depth = top;
+    for (int32_t i = 1; i < rows; ++i) {
+        depth += cell_height(section, growth, depth);
+        depths.push_back(top + stretch * (depth - top));
+    }
+    depths.push_back(bottom);
+}
+
+// --- mesh ------------------------------------------------------------------------------------------------------------
+
+/// Rows of each layer: as many as the place that needs most.
+std::vector<int32_t> layer_rows(const SectionGround& section, const std::vector<double>& lines, const std::vector<std::vector<double>>& interfaces) {
+    std::vector<int32_t> rows(section.layers.size(), 1);
+    double total = 0;
+    for (size_t k = 0; k < rows.size(); ++k) {
+        for (size_t i = 0; i < lines.size(); ++i) {
+            const double surface = interfaces[i].front();
+            rows[k] = std::max(rows[k], rows_needed(section, surface - interfaces[i][k], surface - interfaces[i][k + 1], lines[i]));
+        }
+        total += rows[k];
+    }
+    if (total * static_cast<double>(lines.size()) > most_cells) {
+        throw Error(Status::invalid_scene, "ground.section: would have " + number_text(total * static_cast<double>(lines.size())) +
+                                               " cells, more than " + number_text(most_cells) + "; give columnWidth or the cell heights larger values");
+    }
+    return rows;
+}
+
+/// Adds the nodes of one grid line from the base up; returns the node of each row boundary from the surface down. Boundaries
+/// that coincide, where a layer is pinched out, share a node.
+std::vector<int32_t> add_line(const SectionGround& section, double x, const std::vector<double>& interface, const std::vector<int32_t>& rows,
+                              Mesh& mesh) {
+    const double surface = interface.front();
+    std::vector<double> depths = {0};
+    for (size_t k = 0; k < rows.size(); ++k) {
+        const double top = surface - interface[k];
+        const double bottom = surface - interface[k + 1];
+        if (bottom > top) add_row_depths(section, top, bottom, rows[k], depths);
+        else depths.insert(depths.end(), static_cast<size_t>(rows[k]), top);
+    }
+    std::vector<int32_t> nodes(depths.size());
+    for (size_t row = depths.size(); row-- > 0;) {
+        const bool same_as_below = row + 1 < depths.size() && depths[row + 1] <= depths[row];
+        if (!same_as_below) {
+            mesh.position.push_back(x);
+            mesh.position.push_back(surface - depths[row]);
+        }
+        nodes[row] = mesh.node_count() - 1;
+    }
+    return nodes;
+}
+
+/// A quad between two grid lines, a triangle where one side has no height, nothing where both have none.
+void add_cell(int32_t bottom_left, int32_t bottom_right, int32_t top_right, int32_t top_left, int32_t soil, Mesh& mesh) {
+    if (bottom_left == top_left && bottom_right == top_right) return;
+    std::vector<int32_t>& nodes = mesh.cell_nodes;
+    nodes.insert(nodes.end(), {bottom_left, bottom_right});
+    if (top_right != bottom_right) nodes.push_back(top_right);
+    if (top_left != bottom_left) nodes.push_back(top_left);
+    mesh.cell_start.push_back(static_cast<int32_t>(nodes.size()));
+    mesh.cell_soil.push_back(soil);
+}
+
+}  // namespace
+
+Mesh build_section(const Scene& scene) {
+    const SectionGround& section = scene.ground.section;
+    std::vector<const Profile*> profiles = {&section.terrain};
+    for (size_t k = 1; k < section.layers.size(); ++k) profiles.push_back(&section.layers[k].top);
+    profiles.push_back(&section.base);
+    std::vector<int32_t> soils;
+    for (size_t k = 0; k < section.layers.size(); ++k) {
+        soils.push_back(find_soil(scene, section.layers[k].soil, "ground.section.layers[" + std::to_string(k) + "].soil"));
+    }
+
+    const std::vector<double> lines = grid_lines(section, profiles);
+    double height = 0;
+    for (const Place& place : section.terrain) height = std::max(height, place[1] - elevation(section.base, place[0]));
+    std::vector<std::vector<double>> interfaces;
+    for (const double x : lines) interfaces.push_back(interfaces_at(profiles, x, height));
+    const std::vector<int32_t> rows = layer_rows(section, lines, interfaces);
+
+    Mesh mesh;
+    mesh.cell_start = {0};
+    std::vector<int32_t> left;
+    for (size_t i = 0; i < lines.size(); ++i) {
+        const std::vector<int32_t> right = add_line(section, lines[i], interfaces[i], rows, mesh);
+        size_t row = right.size() - 1;
+        for (size_t k = rows.size(); i > 0 && k-- > 0;) {
+            for (int32_t r = 0; r < rows[k]; ++r, --row) add_cell(left[row], right[row], right[row - 1], left[row - 1], soils[k], mesh);
+        }
+        left = right;
+    }
+    check_mesh(mesh);
+    set_sides(mesh);
+    return mesh;
+}
+
+}  // namespace talus
