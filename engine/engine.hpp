@@ -110,7 +110,8 @@ public:
     // step
     /// Carries the state dt seconds on. ok, or cancelled (undone), or out_of_rain (done, with the last rate held).
     Status step(double dt, StepReport& report);
-    void cancel() noexcept;  ///< any thread
+    Status advance_to(double time, StepReport& report);  ///< the same, landing on the time bit for bit
+    void cancel() noexcept;  ///< any thread: ends the step that runs, or else the next one
     [[nodiscard]] double time() const noexcept;  ///< any thread
     [[nodiscard]] const StepReport& last_report() const;
 
