@@ -1,0 +1,16 @@
+// Between the plain structs and a Cap'n Proto message of the schema.
+#pragma once
+
+#include "scene/scene.capnp.h"
+#include "scene/scene.hpp"
+
+namespace talus {
+
+/// What the message says, with the defaults that depend on other entries filled in.
+/// Throws Error(invalid_scene) where the message cannot be a scene: a place without two coordinates, an unknown enumerant.
+[[nodiscard]] Scene from_message(schema::Scene::Reader message);
+
+/// Fills an empty message.
+void to_message(const Scene& scene, schema::Scene::Builder message);
+
+}  // namespace talus
