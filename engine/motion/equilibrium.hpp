@@ -1,0 +1,112 @@
+// Quasi-static equilibrium of the skeleton on the fitted mesh: integral of B^T (skeleton stress - pore stress) = weight + forces.
+// Updated Lagrangian: an increment is solved on the last accepted geometry, and accept() moves nodes and points by it.
+#pragma once
+
+#include "ground/mesh.hpp"
+#include "motion/cell_kinematics.hpp"
+#include "motion/collapse.hpp"
+#include "motion/loads.hpp"
+#include "motion/skeleton.hpp"
+#include "motion/stiffness.hpp"
+#include "points/points.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace talus {
+
+enum class EquilibriumStatus {
+    converged,
+    no_equilibrium,  ///< proved: the loads move the ground in a steady mechanism that they keep driving
+    not_converged,   ///< the solver stopped; says nothing on the ground
+};
+
+struct EquilibriumOutcome {
+    EquilibriumStatus status = EquilibriumStatus::not_converged;
+    int32_t iterations = 0;          ///< linear solves
+    int32_t factorisations = 0;
+    int32_t pseudo_steps = 0;        ///< of these iterations, steps in pseudo-time
+    int32_t yielding = 0;            ///< points on the yield surface
+    double residual = 0;             ///< norm of the unbalanced force over the norm of the loads, -
+    double largest_increment = 0;    ///< m
+    CollapseEvidence collapse;       ///< of no_equilibrium, and the last seen of not_converged
+};
+
+class Equilibrium {
+public:
+    /// The unbalanced force that is let stand, over the norm of the loads: the larger of the external forces (weight, pore
+    /// stress, boundary forces) and the reactions.
+    static constexpr double tolerance = 1e-7;
+
+    /// `solids`: one a soil. `prescribed`: nodes x dimension, non-zero where the displacement is given. `gravity` in m/s2,
+    /// downwards. Mesh and points are the caller's; their present state is the accepted one.
+    Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, std::span<const uint8_t> prescribed, double gravity);
+
+    /// Finds the displacement increment from the accepted state that balances the loads. The points' stress, strain, plastic
+    /// strain and mobilised strength are a trial state until accept() or reject().
+    EquilibriumOutcome solve(const Loads& loads);
+
+    /// As solve() for a skeleton that does not yield: gravity turned on elastically.
+    EquilibriumOutcome solve_elastically(const Loads& loads);
+
+    /// Moves nodes and points by the increment, turns the stresses with it, updates the volumes.
+    void accept();
+
+    /// Keeps the stress, and forgets the increment, its strain and plastic strain: the ground takes its stress where it lies.
+    void accept_stress();
+
+    /// Back to the last accepted state, bit for bit.
+    void reject();
+
+    /// Nodes x dimension. `increment` is that of the last solve; `reaction` (N per m) is zero where not prescribed.
+    [[nodiscard]] std::span<const double> displacement() const { return displacement_; }
+    [[nodiscard]] std::span<const double> increment() const { return increment_; }
+    [[nodiscard]] std::span<const double> reaction() const { return reaction_; }
+
+    /// Volumetric strain increment of a cell since the accepted state, the mean one that its stress follows, -.
+    [[nodiscard]] double volumetric_increment(int32_t cell) const;
+
+    [[nodiscard]] double least_factor_of_safety() const { return skeleton_.least_factor_of_safety(); }
+
+private:
+    struct Factor {
+        SparseMatrix matrix;
+        std::unique_ptr<KluSolver> solver;
+    };
+
+    void set_external_force(const Loads& loads);
+    void start(const Loads& loads);
+    double unbalance();
+    double unbalance_elastic();
+    double residual_norm();
+    void predict(EquilibriumOutcome& outcome);
+    bool newton(EquilibriumOutcome& outcome);
+    bool line_search(double& norm);
+    bool factorise_elastic(EquilibriumOutcome& outcome);
+    bool factorise_tangent(double viscosity, EquilibriumOutcome& outcome);
+    void solve_for_direction(Factor& factor, EquilibriumOutcome& outcome);
+    void step_along(double length);
+    void finish(EquilibriumOutcome& outcome);
+    void keep_positions();
+
+    Mesh& mesh_;
+    Points& points_;
+    double gravity_;
+    CellKinematics kinematics_;
+    Equations equations_;
+    Skeleton skeleton_;
+    Stiffness stiffness_;
+    Factor elastic_, tangent_;
+    bool elastic_is_factorised_ = false;
+    bool elastic_is_fresh_ = false;  // of the present geometry
+
+    std::vector<double> displacement_, increment_, reaction_;      // nodes x dimension
+    std::vector<double> external_, internal_, search_start_;       // nodes x dimension
+    std::vector<double> residual_, direction_;                     // equations
+    int32_t yielding_ = 0;
+};
+
+}  // namespace talus

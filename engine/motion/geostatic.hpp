@@ -1,0 +1,17 @@
+// The stress of the ground before anything happens to it. Displacement and strain count from there.
+#pragma once
+
+#include "motion/equilibrium.hpp"
+
+namespace talus {
+
+/// Gravity turned on elastically from no stress, then equilibrium with the soils' strength. The stress is accepted where the
+/// outcome is converged; otherwise the trial one stands and says where the ground gives way.
+EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads);
+
+/// Vertical stress from the weight above each point, horizontal skeleton stress `k0` times the vertical one, then equilibrium
+/// with the soils' strength, as above. `gravity` in m/s2.
+EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Points& points, const Loads& loads, double gravity,
+                                 double k0);
+
+}  // namespace talus
