@@ -2,9 +2,9 @@
 
 #include "error.hpp"
 
+#include <klu.h>
 #include <algorithm>
 #include <cassert>
-#include <klu.h>
 
 namespace talus {
 
@@ -74,7 +74,8 @@ bool KluSolver::factorise(const SparseMatrix& matrix) {
     constexpr double worst_reciprocal_condition = 1e-14;
     if (numeric != nullptr) {
         const bool done = klu_refactor(start, row, values(matrix), symbolic, numeric, &common) != 0;
-        if (done && klu_rcond(symbolic, numeric, &common) != 0 && common.rcond > worst_reciprocal_condition) return true;
+        if (done && klu_rcond(symbolic, numeric, &common) != 0 && common.rcond > worst_reciprocal_condition)
+            return true;
         klu_free_numeric(&numeric, &common);
     }
     numeric = klu_factor(start, row, values(matrix), symbolic, &common);

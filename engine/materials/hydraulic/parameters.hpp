@@ -47,9 +47,9 @@ enum class PorosityDependence { none, kozeny_carman };
 
 /// Saturated hydraulic conductivity of a soil, m/s of water at the scene's density.
 struct Conductivity {
-    double along = 0;      ///< along the bedding, m/s
-    double across = 0;     ///< across the bedding, m/s
-    double dip = 0;        ///< angle of the bedding from the x axis, degrees, counter-clockwise
+    double along = 0;   ///< along the bedding, m/s
+    double across = 0;  ///< across the bedding, m/s
+    double dip = 0;     ///< angle of the bedding from the x axis, degrees, counter-clockwise
     PorosityDependence porosity_dependence = PorosityDependence::none;
 };
 

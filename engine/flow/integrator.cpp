@@ -1,0 +1,238 @@
+#include "flow/integrator.hpp"
+
+#include "error.hpp"
+
+#include <arkode/arkode_arkstep.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_nonlinearsolver.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+namespace {
+
+constexpr double stage_tolerance =
+    1e-9;  // of the pore volume: Newton converges quadratically, so this costs one iteration and keeps the balance
+
+void check(int flag, const char* call) {
+    if (flag != 0) throw Error(Status::internal, std::string("SUNDIALS ") + call + " returned " + std::to_string(flag));
+}
+
+// Largest weighted entry instead of ARKODE's root mean square: an error at a front must not hide behind the nodes at rest.
+double largest_weighted(N_Vector x, N_Vector weight) {
+    const double* values = N_VGetArrayPointer(x);
+    const double* weights = N_VGetArrayPointer(weight);
+    double largest = 0;
+    for (sunindextype i = 0; i < N_VGetLength(x); ++i) largest = std::max(largest, std::abs(values[i] * weights[i]));
+    return largest;
+}
+
+// Alexander (1977): two stages, second order, L-stable, stiffly accurate, so that the last stage's pressures are the step's. Embedded: the
+// first order b = (1, 0), damped like the method itself.
+ARKodeButcherTable alexander_table() {
+    const double gamma = 1.0 - 1.0 / std::sqrt(2.0);
+    std::array<double, 2> c{gamma, 1.0};
+    std::array<double, 4> a{gamma, 0.0, 1.0 - gamma, gamma};
+    std::array<double, 2> b{1.0 - gamma, gamma};
+    std::array<double, 2> d{1.0, 0.0};
+    return ARKodeButcherTable_Create(2, 2, 1, c.data(), a.data(), b.data(), d.data());
+}
+
+}  // namespace
+
+struct FlowIntegrator::Arkode {
+    FlowSystem& system;
+    StageSolver solver;
+    double tolerance;
+    SUNContext context = nullptr;
+    N_Vector variables = nullptr;  // stored water of every node, then the totals
+    SUNNonlinearSolver nonlinear_solver = nullptr;
+    void* memory = nullptr;
+    std::vector<double> accepted;  // pressures at the last finished substep
+    std::vector<double> stage;     // pressures at the last stage solved
+    double stage_time = 0;
+    double accepted_time = 0;
+    std::vector<double> target;
+
+    Arkode(FlowSystem& system_in, double tolerance_in);
+    ~Arkode();
+    Arkode(const Arkode&) = delete;
+    Arkode& operator=(const Arkode&) = delete;
+
+    void start(const FlowState& state);
+    int solve_stage(N_Vector correction);
+
+    static Arkode& of(SUNNonlinearSolver solver) { return *static_cast<Arkode*>(solver->content); }
+    // ARKODE's callbacks
+    static int right_hand_side(realtype t, N_Vector y, N_Vector result, void* user);
+    static int weights(N_Vector y, N_Vector weight, void* user);
+};
+
+FlowIntegrator::Arkode::Arkode(FlowSystem& system_in, double tolerance_in)
+    : system(system_in), solver(system_in), tolerance(tolerance_in) {
+    const auto nodes = static_cast<size_t>(system.node_count());
+    accepted.resize(nodes);
+    stage.resize(nodes);
+    target.resize(nodes);
+    check(SUNContext_Create(nullptr, &context), "SUNContext_Create");
+    variables = N_VNew_Serial(static_cast<sunindextype>(nodes + flow_total_count), context);
+    variables->ops->nvwrmsnorm = largest_weighted;
+    N_VConst(0.0, variables);
+
+    nonlinear_solver = SUNNonlinSolNewEmpty(context);
+    nonlinear_solver->content = this;
+    nonlinear_solver->ops->gettype = [](SUNNonlinearSolver) { return SUNNONLINEARSOLVER_ROOTFIND; };
+    nonlinear_solver->ops->setsysfn = [](SUNNonlinearSolver, SUNNonlinSolSysFn) { return 0; };
+    nonlinear_solver->ops->solve = [](SUNNonlinearSolver self, N_Vector, N_Vector correction, N_Vector, realtype,
+                                      booleantype, void*) { return of(self).solve_stage(correction); };
+
+    memory = ARKStepCreate(nullptr, right_hand_side, 0.0, variables, context);
+    if (memory == nullptr) throw Error(Status::out_of_memory, "SUNDIALS could not set up the flow's time integration");
+    check(ARKStepSetUserData(memory, this), "ARKStepSetUserData");
+    const ARKodeButcherTable table = alexander_table();
+    const int flag = ARKStepSetTables(memory, 2, 1, table, nullptr);
+    ARKodeButcherTable_Free(table);
+    check(flag, "ARKStepSetTables");
+    check(ARKStepWFtolerances(memory, weights), "ARKStepWFtolerances");
+    check(ARKStepSetNonlinearSolver(memory, nonlinear_solver), "ARKStepSetNonlinearSolver");
+    check(ARKStepSetDeduceImplicitRhs(memory, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
+    check(ARKStepSetInterpolantType(memory, ARK_INTERP_LAGRANGE), "ARKStepSetInterpolantType");
+    check(ARKStepSetMaxNumSteps(memory, -1), "ARKStepSetMaxNumSteps");
+    check(ARKStepSetMaxConvFails(memory, 60), "ARKStepSetMaxConvFails");
+    check(ARKStepSetMaxErrTestFails(memory, 30), "ARKStepSetMaxErrTestFails");
+    check(ARKStepSetErrFile(memory, nullptr), "ARKStepSetErrFile");
+}
+
+FlowIntegrator::Arkode::~Arkode() {
+    if (memory != nullptr) ARKStepFree(&memory);
+    if (nonlinear_solver != nullptr) SUNNonlinSolFreeEmpty(nonlinear_solver);
+    if (variables != nullptr) N_VDestroy(variables);
+    if (context != nullptr) SUNContext_Free(&context);
+}
+
+void FlowIntegrator::Arkode::start(const FlowState& state) {
+    double* y = N_VGetArrayPointer(variables);
+    std::copy(state.stored.begin(), state.stored.end(), y);
+    std::copy(state.totals.begin(), state.totals.end(), y + state.stored.size());
+    accepted = state.pressure;
+    stage_time = accepted_time = 0.0;
+    check(ARKStepReInit(memory, nullptr, right_hand_side, 0.0, variables), "ARKStepReInit");
+}
+
+// ARKODE asks for it where a step begins, and for that state alone are its values used.
+int FlowIntegrator::Arkode::right_hand_side(realtype t, N_Vector, N_Vector result, void* user) {
+    Arkode& self = *static_cast<Arkode*>(user);
+    self.system.evaluate(t, self.accepted);
+    double* rates = N_VGetArrayPointer(result);
+    std::copy(self.system.inflow().begin(), self.system.inflow().end(), rates);
+    std::copy(self.system.total_rates().begin(), self.system.total_rates().end(), rates + self.accepted.size());
+    return 0;
+}
+
+int FlowIntegrator::Arkode::weights(N_Vector, N_Vector weight, void* user) {
+    const Arkode& self = *static_cast<Arkode*>(user);
+    double* w = N_VGetArrayPointer(weight);
+    const std::span<const double> pores = self.system.pore_volume();
+    for (size_t i = 0; i < pores.size(); ++i) w[i] = 1.0 / (self.tolerance * pores[i]);
+    std::fill(w + pores.size(), w + pores.size() + flow_total_count, std::numeric_limits<double>::min());
+    return 0;
+}
+
+// One stage z = known + gamma rate(z), where known = predicted + sdata. What the nodes hold after it is defined by the flows, not by the
+// retention curve: Newton's remainder stays in the stored water and enters the next stage's equation, so no water is ever lost to it.
+int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
+    realtype t = 0;
+    realtype gamma = 0;
+    N_Vector predicted = nullptr;
+    N_Vector value = nullptr;
+    N_Vector rate = nullptr;
+    N_Vector known = nullptr;
+    void* user = nullptr;
+    if (ARKStepGetNonlinearSystemData(memory, &t, &predicted, &value, &rate, &gamma, &known, &user) != 0) return -1;
+    const double* before = N_VGetArrayPointer(predicted);
+    const double* change = N_VGetArrayPointer(known);
+    for (size_t i = 0; i < target.size(); ++i) target[i] = before[i] + change[i];
+    if (stage_time <= accepted_time || stage_time >= t) stage = accepted;
+    if (!solver.solve(t, gamma, target, stage_tolerance, stage)) {
+        stage_time = accepted_time;
+        return SUN_NLS_CONV_RECVR;
+    }
+    stage_time = t;
+
+    double* z = N_VGetArrayPointer(correction);
+    FlowTotals rates = system.total_rates();
+    for (size_t i = 0; i < target.size(); ++i) {
+        if (!system.is_held(i)) {
+            z[i] = change[i] + gamma * system.inflow()[i];
+            continue;
+        }
+        const double through_boundary = (system.stored()[i] - target[i]) / gamma - system.inflow()[i];
+        rates[through_boundary > 0 ? inflow_total : drained_total] += std::abs(through_boundary);
+        z[i] = system.stored()[i] - before[i];
+    }
+    for (size_t k = 0; k < flow_total_count; ++k) z[target.size() + k] = change[target.size() + k] + gamma * rates[k];
+    return SUN_NLS_SUCCESS;
+}
+
+FlowIntegrator::FlowIntegrator(FlowSystem& system, double tolerance)
+    : arkode_(std::make_unique<Arkode>(system, tolerance)) {}
+
+FlowIntegrator::~FlowIntegrator() = default;
+
+AdvanceResult FlowIntegrator::advance(FlowState& state, double duration,
+                                      const std::function<bool(double)>& after_substep) {
+    Arkode& ark = *arkode_;
+    ark.start(state);
+    ARKStepSetStopTime(ark.memory, duration);
+    if (state.substep > 0) ARKStepSetInitStep(ark.memory, std::min(state.substep, duration));
+    const int64_t iterations_before = ark.solver.iterations();
+    AdvanceResult result = AdvanceResult::done;
+    for (double t = 0; t < duration && result == AdvanceResult::done;) {
+        if (ARKStepEvolve(ark.memory, duration, ark.variables, &t, ARK_ONE_STEP) < 0) {
+            result = AdvanceResult::failed;
+            break;
+        }
+        ark.accepted = ark.stage;
+        ark.accepted_time = t;
+        if (t < duration || state.substep <= 0) ARKStepGetCurrentStep(ark.memory, &state.substep);
+        if (after_substep(t / duration)) result = AdvanceResult::cancelled;
+    }
+    long steps = 0, attempts = 0;
+    ARKStepGetNumSteps(ark.memory, &steps);
+    ARKStepGetNumStepAttempts(ark.memory, &attempts);
+    statistics_.substeps += steps;
+    statistics_.failures += attempts - steps;
+    statistics_.iterations += ark.solver.iterations() - iterations_before;
+
+    const double* y = N_VGetArrayPointer(ark.variables);
+    std::copy(y, y + state.stored.size(), state.stored.begin());
+    std::copy(y + state.stored.size(), y + state.stored.size() + flow_total_count, state.totals.begin());
+    state.pressure = ark.accepted;
+    return result;
+}
+
+bool FlowIntegrator::find_steady(FlowState& state) {
+    constexpr double first_step = 1.0;  // s
+    constexpr double last_step = 1e14;  // s
+    Arkode& ark = *arkode_;
+    double step = first_step;
+    std::vector<double> trial = state.pressure;
+    ark.system.evaluate(0.0, trial);
+    while (step < last_step) {
+        ark.target.assign(ark.system.stored().begin(), ark.system.stored().end());
+        trial = state.pressure;
+        if (ark.solver.solve(0.0, step, ark.target, 1e-9, trial)) {
+            state.pressure = trial;
+            step *= 4.0;
+        } else {
+            step *= 0.2;
+            if (step < 1e-6 * first_step) return false;
+            ark.system.evaluate(0.0, state.pressure);
+        }
+    }
+    return true;
+}
+
+}  // namespace talus

@@ -1,0 +1,74 @@
+#include "flow/stage_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+namespace {
+
+constexpr int most_iterations = 30;
+constexpr int most_halvings = 6;
+constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more leaves nothing to gain
+
+double largest_relative_change(std::span<const double> before, std::span<const double> after) {
+    double largest = 0;
+    for (size_t i = 0; i < before.size(); ++i)
+        largest = std::max(largest, std::abs(after[i] - before[i]) / (1.0 + std::abs(before[i])));
+    return largest;
+}
+
+}  // namespace
+
+StageSolver::StageSolver(FlowSystem& system)
+    : system_(system),
+      matrix_(system.make_matrix()),
+      solver_(matrix_),
+      residual_(static_cast<size_t>(system.node_count())),
+      change_(residual_.size()),
+      trial_(residual_.size()) {}
+
+// Largest residual relative to a node's pores; evaluates the system. Sets merit_ too.
+double StageSolver::residual(double t, double step, std::span<const double> target, std::span<const double> pressure) {
+    system_.evaluate(t, pressure);
+    double largest = 0;
+    merit_ = 0;
+    for (size_t i = 0; i < residual_.size(); ++i) {
+        residual_[i] = system_.is_held(i) ? 0.0 : system_.stored()[i] - step * system_.inflow()[i] - target[i];
+        largest = std::max(largest, std::abs(residual_[i]) / system_.pore_volume()[i]);
+        merit_ += std::abs(residual_[i]);
+    }
+    return std::isfinite(merit_) ? largest : std::numeric_limits<double>::infinity();
+}
+
+bool StageSolver::solve(double t, double step, std::span<const double> target, double tolerance,
+                        std::span<double> pressure) {
+    const auto& held = system_.boundaries.held;
+    for (size_t h = 0; h < held.size(); ++h)
+        pressure[static_cast<size_t>(held[h].node)] = system_.forcing.held[h].at(t);
+    double error = residual(t, step, target, pressure);
+    for (int iteration = 0; iteration < most_iterations && error > tolerance; ++iteration) {
+        if (!std::isfinite(error)) return false;
+        ++iterations_;
+        system_.assemble(step, matrix_);
+        if (!solver_.factorise(matrix_)) return false;
+        std::transform(residual_.begin(), residual_.end(), change_.begin(), [](double r) { return -r; });
+        solver_.solve(matrix_, change_);
+        // The equations are accretive in the sum of their absolute residuals (what enters a node leaves others), hence that merit.
+        const double merit = merit_;
+        double length = 1.0;
+        double trial_error = 0;
+        for (int halving = 0; halving <= most_halvings; ++halving, length *= 0.5) {
+            for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = system_.moved(i, pressure[i], length * change_[i]);
+            trial_error = residual(t, step, target, trial_);
+            if (merit_ < merit) break;
+        }
+        const bool settled = length == 1.0 && largest_relative_change(pressure, trial_) < round_off;
+        std::copy(trial_.begin(), trial_.end(), pressure.begin());
+        error = trial_error;
+        if (settled && std::isfinite(error)) return true;
+    }
+    return error <= tolerance;
+}
+
+}  // namespace talus

@@ -1,0 +1,31 @@
+// Newton's method for one implicit stage of the flow: stored(p) - step inflow(p) = target at every node.
+#pragma once
+
+#include "flow/system.hpp"
+
+#include <vector>
+
+namespace talus {
+
+class StageSolver {
+public:
+    explicit StageSolver(FlowSystem& system);
+
+    /// Finds the pressures at t seconds into the advance, starting from those in `pressure`. Every free node's equation is met to
+    /// `tolerance` of its pore volume. On failure returns false and leaves `pressure` as the last iterate.
+    bool solve(double t, double step, std::span<const double> target, double tolerance, std::span<double> pressure);
+
+    [[nodiscard]] int64_t iterations() const { return iterations_; }  ///< since the start
+
+private:
+    double residual(double t, double step, std::span<const double> target, std::span<const double> pressure);
+
+    FlowSystem& system_;
+    SparseMatrix matrix_;
+    KluSolver solver_;
+    std::vector<double> residual_, change_, trial_;
+    double merit_ = 0;  // sum of the absolute residuals, m3
+    int64_t iterations_ = 0;
+};
+
+}  // namespace talus

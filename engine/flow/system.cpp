@@ -1,0 +1,268 @@
+#include "flow/system.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+// Share of the weight term that takes node a's permeability, exact where k_r is linear in the potential between a and b: then it is the
+// steady flux between the two (Scharfetter & Gummel 1969; Eymard, Fuhrmann & Gaertner 2006). 1/2 where diffusion rules, upstream where
+// gravity does, so the flux stays monotone on coarse cells and second order on fine ones.
+struct Blend {
+    double share;
+    double slope;  ///< d(share)/d(peclet)
+};
+
+Blend blend(double peclet) {
+    if (std::abs(peclet) < 1e-2) {
+        const double square = peclet * peclet;
+        return {0.5 - peclet / 12.0 * (1.0 - square / 60.0), -1.0 / 12.0 * (1.0 - square / 20.0)};
+    }
+    if (peclet > 500.0) return {1.0 / peclet, -1.0 / (peclet * peclet)};
+    if (peclet < -500.0) return {1.0 + 1.0 / peclet, -1.0 / (peclet * peclet)};
+    const double grown = std::expm1(peclet);
+    return {1.0 / peclet - 1.0 / grown, (1.0 + grown) / (grown * grown) - 1.0 / (peclet * peclet)};
+}
+
+struct LinkFlow {
+    double flow;     ///< a -> b per transmissibility, Pa
+    double slope_a;  ///< d(flow)/dp_a
+    double slope_b;
+};
+
+double tangent_steepness(const HydraulicState& at) {
+    return at.permeability > 0 ? at.permeability_slope / at.permeability : 0.0;
+}
+
+// Flow from a to b: potential difference minus the weight of the water between them, G = rho g (y_b - y_a) times a mean k_r.
+LinkFlow link_flow(const HydraulicState& a, const HydraulicState& b, double weight_drop, double orientation) {
+    const double rise = b.potential - a.potential;
+    const double change = b.permeability - a.permeability;
+    // Steepness dk/d(potential): of the chord, or of the curve where the ends nearly meet and the chord is lost to round-off.
+    const bool apart = std::abs(rise) > 1e-7 * (std::abs(a.potential) + std::abs(b.potential));
+    const double steepness = apart ? std::max(0.0, change / rise) : tangent_steepness(a);
+    const Blend mean = blend(orientation * weight_drop * steepness);
+    const double steepness_a = apart ? (steepness * a.permeability - a.permeability_slope) / rise : 0.0;
+    const double steepness_b = apart ? (b.permeability_slope - steepness * b.permeability) / rise : 0.0;
+    const double bend = weight_drop * orientation * weight_drop * mean.slope * change;
+    return {-rise - weight_drop * (b.permeability - mean.share * change),
+            a.permeability - weight_drop * mean.share * a.permeability_slope + bend * steepness_a,
+            -b.permeability - weight_drop * (1.0 - mean.share) * b.permeability_slope + bend * steepness_b};
+}
+
+}  // namespace
+
+FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, FlowBoundaries boundaries_in)
+    : network(std::move(network_in)), boundaries(std::move(boundaries_in)), scene_(scene) {
+    for (const Soil& soil : scene.soils) tables_.emplace_back(soil.hydraulics);
+    const auto count = static_cast<size_t>(nodes);
+    held_node_.assign(count, 0);
+    for (const HeldNode& held : boundaries.held) held_node_[static_cast<size_t>(held.node)] = 1;
+    for (auto* array : {&stored_, &inflow_, &stored_slope_, &inflow_slope_, &node_pore_volume_})
+        array->assign(count, 0.0);
+    state_.resize(network.portions.size());
+    link_slope_.resize(network.links.size());
+    if (scene.physics.deforming) {
+        pore_stress_.resize(network.portions.size());
+        pore_stress_slope_.resize(network.portions.size());
+    }
+    soil_of_node_.assign(count, -1);
+    std::vector<double> largest(count, 0.0);
+    std::vector<double> volume(network.portions.size(), 0.0);
+    for (size_t corner = 0; corner < network.corner_portion.size(); ++corner)
+        volume[static_cast<size_t>(network.corner_portion[corner])] += network.corner_volume[corner];
+    for (size_t i = 0; i < network.portions.size(); ++i) {
+        const auto node = static_cast<size_t>(network.portions[i].node);
+        if (volume[i] <= largest[node]) continue;
+        largest[node] = volume[i];
+        soil_of_node_[node] = network.portions[i].soil;
+    }
+}
+
+SparseMatrix FlowSystem::make_matrix() {
+    std::vector<std::array<int32_t, 2>> pairs;
+    const auto node = [&](int32_t portion) { return network.portions[static_cast<size_t>(portion)].node; };
+    for (const Link& link : network.links) pairs.push_back({node(link.portion_a), node(link.portion_b)});
+    SparseMatrix matrix = symmetric_pattern(node_count(), pairs);
+    link_places_.clear();
+    for (const auto& [a, b] : pairs)
+        link_places_.push_back({matrix.place(a, a), matrix.place(a, b), matrix.place(b, a), matrix.place(b, b)});
+    diagonal_.clear();
+    for (int32_t i = 0; i < node_count(); ++i) diagonal_.push_back(matrix.place(i, i));
+    return matrix;
+}
+
+void FlowSystem::evaluate(double t, std::span<const double> pressure) {
+    std::fill(stored_.begin(), stored_.end(), 0.0);
+    std::fill(stored_slope_.begin(), stored_slope_.end(), 0.0);
+    std::fill(inflow_.begin(), inflow_.end(), 0.0);
+    std::fill(node_pore_volume_.begin(), node_pore_volume_.end(), 0.0);
+    total_rates_.fill(0.0);
+    for (size_t i = 0; i < state_.size(); ++i) {
+        const Portion& portion = network.portions[i];
+        state_[i] = tables_[static_cast<size_t>(portion.soil)].at(pressure[static_cast<size_t>(portion.node)]);
+    }
+    if (skeleton.softness.empty()) {
+        evaluate_rigid(pressure);
+    } else {
+        evaluate_deforming(t, pressure);
+    }
+    evaluate_links();
+    evaluate_surface(pressure);
+    evaluate_flux(t);
+}
+
+void FlowSystem::evaluate_rigid(std::span<const double> pressure) {
+    for (size_t i = 0; i < state_.size(); ++i) {
+        const auto node = static_cast<size_t>(network.portions[i].node);
+        const double pores = skeleton.pore_volume[i].start;
+        const double density = std::exp(pressure[node] / scene_.water.bulk_modulus);
+        stored_[node] += pores * state_[i].saturation * density;
+        stored_slope_[node] +=
+            pores * density * (state_[i].capacity + state_[i].saturation / scene_.water.bulk_modulus);
+        node_pore_volume_[node] += pores;
+    }
+}
+
+void FlowSystem::evaluate_deforming(double t, std::span<const double> pressure) {
+    const bool bishop = scene_.physics.stress == StressMeasure::bishop;
+    for (size_t i = 0; i < state_.size(); ++i) {
+        const auto node = static_cast<size_t>(network.portions[i].node);
+        const double p = pressure[node];
+        const HydraulicState& here = state_[i];
+        if (bishop) {
+            const Retention& retention =
+                scene_.soils[static_cast<size_t>(network.portions[i].soil)].hydraulics.retention;
+            const double range = retention.maximum_saturation - retention.residual_saturation;
+            const double effective = (here.saturation - retention.residual_saturation) / range;
+            pore_stress_[i] = effective * p;
+            pore_stress_slope_[i] = effective + p * here.capacity / range;
+        } else {
+            pore_stress_[i] = std::max(p, 0.0);
+            pore_stress_slope_[i] = p > 0 ? 1.0 : 0.0;
+        }
+        const double pores = skeleton.pore_volume[i].at(t) +
+                             skeleton.softness[i] * (pore_stress_[i] - skeleton.expected_stress[i].at(t));
+        const double density = std::exp(p / scene_.water.bulk_modulus);
+        stored_[node] += pores * here.saturation * density;
+        stored_slope_[node] += density * (pores * (here.capacity + here.saturation / scene_.water.bulk_modulus) +
+                                          skeleton.softness[i] * pore_stress_slope_[i] * here.saturation);
+        node_pore_volume_[node] += pores;
+    }
+    for (size_t l = 0; l < network.links.size(); ++l) {
+        const auto a = static_cast<size_t>(network.links[l].portion_a);
+        const auto b = static_cast<size_t>(network.links[l].portion_b);
+        const double exchanged = skeleton.projection[l] * (pore_stress_[a] - pore_stress_[b]);
+        stored_[static_cast<size_t>(network.portions[a].node)] += exchanged;
+        stored_[static_cast<size_t>(network.portions[b].node)] -= exchanged;
+    }
+}
+
+void FlowSystem::evaluate_links() {
+    for (size_t l = 0; l < network.links.size(); ++l) {
+        const auto a = static_cast<size_t>(network.links[l].portion_a);
+        const auto b = static_cast<size_t>(network.links[l].portion_b);
+        const double transmissibility = network.transmissibility[l];
+        const LinkFlow link =
+            link_flow(state_[a], state_[b], network.weight_drop[l], transmissibility < 0 ? -1.0 : 1.0);
+        inflow_[static_cast<size_t>(network.portions[a].node)] -= transmissibility * link.flow;
+        inflow_[static_cast<size_t>(network.portions[b].node)] += transmissibility * link.flow;
+        link_slope_[l] = {transmissibility * link.slope_a, transmissibility * link.slope_b};
+    }
+}
+
+void FlowSystem::evaluate_surface(std::span<const double> pressure) {
+    const double unit_weight = scene_.water.density * scene_.gravity;
+    const double pond_pressure = unit_weight * scene_.surface.ponding_depth;
+    for (size_t i = 0; i < boundaries.surface.size(); ++i) {
+        const SurfaceNode& surface = boundaries.surface[i];
+        const auto node = static_cast<size_t>(surface.node);
+        const double rain = forcing.rain[i];
+        total_rates_[rain_total] += rain;
+        inflow_slope_[node] = 0.0;
+        if (held_node_[node] != 0) {  // a held node takes its water from what holds it
+            total_rates_[run_off_total] += rain;
+            continue;
+        }
+        inflow_[node] += rain;
+        const double p = pressure[node];
+        if (p <= 0) continue;
+        stored_[node] += surface.area * std::min(p, pond_pressure) / unit_weight;
+        if (p < pond_pressure) stored_slope_[node] += surface.area / unit_weight;
+        if (p <= pond_pressure) continue;
+        const double conductance = (surface.area * surface.conductivity + rain) / (unit_weight * weir_thickness);
+        const double excess = conductance * (p - pond_pressure);
+        inflow_[node] -= excess;
+        inflow_slope_[node] = -conductance;
+        total_rates_[run_off_total] += std::min(excess, rain);
+        total_rates_[seepage_total] += std::max(excess - rain, 0.0);
+    }
+}
+
+void FlowSystem::evaluate_flux(double t) {
+    for (size_t i = 0; i < boundaries.flux_shares.size(); ++i) {
+        const auto node = static_cast<size_t>(boundaries.flux_shares[i].node);
+        if (held_node_[node] != 0) continue;
+        const double flux = forcing.flux[i].at(t);
+        inflow_[node] += flux;
+        total_rates_[flux > 0 ? inflow_total : drained_total] += std::abs(flux);
+    }
+}
+
+void FlowSystem::assemble(double step, SparseMatrix& matrix) const {
+    std::fill(matrix.value.begin(), matrix.value.end(), 0.0);
+    for (size_t i = 0; i < diagonal_.size(); ++i)
+        matrix.value[static_cast<size_t>(diagonal_[i])] =
+            held_node_[i] != 0 ? 1.0 : stored_slope_[i] - step * inflow_slope_[i];
+    const bool deforming = !skeleton.softness.empty();
+    for (size_t l = 0; l < link_places_.size(); ++l) {
+        const auto a = static_cast<size_t>(network.links[l].portion_a);
+        const auto b = static_cast<size_t>(network.links[l].portion_b);
+        double slope_a = step * link_slope_[l][0];
+        double slope_b = step * link_slope_[l][1];
+        if (deforming) {
+            slope_a += skeleton.projection[l] * pore_stress_slope_[a];
+            slope_b -= skeleton.projection[l] * pore_stress_slope_[b];
+        }
+        const Places& place = link_places_[l];
+        if (held_node_[static_cast<size_t>(network.portions[a].node)] == 0) {
+            matrix.value[static_cast<size_t>(place.aa)] += slope_a;
+            matrix.value[static_cast<size_t>(place.ab)] += slope_b;
+        }
+        if (held_node_[static_cast<size_t>(network.portions[b].node)] == 0) {
+            matrix.value[static_cast<size_t>(place.ba)] -= slope_a;
+            matrix.value[static_cast<size_t>(place.bb)] -= slope_b;
+        }
+    }
+}
+
+// Brenner & Cances (2017): Newton in the variable whose curves are straight. Below the steepest point of the retention that is the
+// saturation, above it the pressure; the two join with the slope of that point.
+double FlowSystem::moved(size_t node, double pressure, double change) const {
+    const HydraulicTable& table = tables_[static_cast<size_t>(soil_of_node_[node])];
+    const double turn = table.switch_pressure();
+    constexpr double straight = 1e-3;  // the curves are so over this share of the suction
+    if (pressure >= turn && pressure + change >= turn) return pressure + change;
+    if (std::abs(change) < straight * std::abs(pressure)) return pressure + change;
+    const HydraulicState at_turn = table.at(turn);
+    if (at_turn.capacity <= 0) return pressure + change;
+    const HydraulicState here = table.at(pressure);
+    const double target = pressure >= turn ? at_turn.saturation + at_turn.capacity * (pressure + change - turn)
+                                           : here.saturation + here.capacity * change;
+    if (target >= at_turn.saturation) return turn + (target - at_turn.saturation) / at_turn.capacity;
+    constexpr double largest_loss = 0.9;  // of what is above the residual saturation
+    const double mobile = std::min(here.saturation, at_turn.saturation) - table.residual_saturation();
+    const double least = table.residual_saturation() + (1.0 - largest_loss) * mobile;
+    return table.pressure_of_saturation(std::max(target, least));
+}
+
+double FlowSystem::pore_stress(size_t soil, double pressure) const {
+    if (scene_.physics.stress == StressMeasure::net) return std::max(pressure, 0.0);
+    const Retention& retention = scene_.soils[soil].hydraulics.retention;
+    const double mobile = tables_[soil].at(pressure).saturation - retention.residual_saturation;
+    return mobile / (retention.maximum_saturation - retention.residual_saturation) * pressure;
+}
+
+}  // namespace talus

@@ -1,0 +1,111 @@
+// The equations of the flow on the network: water stored at each node and water flowing into it, as functions of the nodes' pore pressure,
+// with their derivatives. d(stored)/dt = inflow is physics.md's water balance, integrated over the node's share of the ground.
+#pragma once
+
+#include "flow/boundaries.hpp"
+#include "flow/network.hpp"
+#include "linear/klu_solver.hpp"
+#include "materials/hydraulic/hydraulic_table.hpp"
+#include "scene/scene.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace talus {
+
+/// Water that crossed the edge of the ground, m3: see WaterBalance in engine.hpp.
+enum FlowTotal : size_t { rain_total, run_off_total, seepage_total, inflow_total, drained_total, flow_total_count };
+using FlowTotals = std::array<double, flow_total_count>;
+
+/// A value that is linear in time over one advance: start + rate t, t in s since the advance began.
+struct Ramp {
+    double start = 0;
+    double rate = 0;
+
+    [[nodiscard]] double at(double t) const { return start + rate * t; }
+};
+
+/// What drives the flow during one advance.
+struct FlowForcing {
+    std::vector<double> rain;  ///< per surface node, m3/s
+    std::vector<Ramp> held;    ///< per held node, Pa
+    std::vector<Ramp> flux;    ///< per flux share, m3/s
+};
+
+/// How the skeleton moves during one advance: pore volume = ramp + softness (pi - expected pi), where pi is the pore stress that loads the
+/// skeleton. The last term is the fixed-stress split's and vanishes when flow and motion agree.
+struct SkeletonMotion {
+    std::vector<Ramp> pore_volume;      ///< per portion, m3
+    std::vector<double> softness;       ///< per portion, m3/Pa; empty: rigid
+    std::vector<Ramp> expected_stress;  ///< per portion, Pa
+    std::vector<double>
+        projection;  ///< per link, m3/Pa: pressure projection, which keeps equal-order elements from oscillating
+};
+
+class FlowSystem {
+public:
+    FlowSystem(const Scene& scene, int32_t nodes, Network network, FlowBoundaries boundaries);
+
+    /// A matrix with the pattern that assemble() fills.
+    [[nodiscard]] SparseMatrix make_matrix();
+
+    /// Stored water and inflow at every node, t seconds into the advance, at pressure p (Pa, one a node).
+    void evaluate(double t, std::span<const double> pressure);
+    /// d(stored - step inflow)/dp at the last evaluate(); the rows of held nodes are the identity.
+    void assemble(double step, SparseMatrix& matrix) const;
+
+    [[nodiscard]] int32_t node_count() const { return static_cast<int32_t>(stored_.size()); }
+    [[nodiscard]] std::span<const double> stored() const { return stored_; }  ///< m3, ponds included
+    [[nodiscard]] std::span<const double> inflow() const {
+        return inflow_;
+    }  ///< m3/s, without what holds the held nodes
+    [[nodiscard]] const FlowTotals& total_rates() const { return total_rates_; }             ///< m3/s, likewise
+    [[nodiscard]] std::span<const double> pore_volume() const { return node_pore_volume_; }  ///< m3, one a node
+    [[nodiscard]] std::span<const HydraulicState> state() const { return state_; }           ///< one a portion
+    [[nodiscard]] bool is_held(size_t node) const { return held_node_[node] != 0; }
+
+    /// Carries a node's pressure by a Newton change, in pressure where it is wet and in saturation where it is dry.
+    [[nodiscard]] double moved(size_t node, double pressure, double change) const;
+
+    /// Pore stress pi that loads the skeleton of a soil, Pa: max(p, 0) of net stress, S_e p of Bishop's.
+    [[nodiscard]] double pore_stress(size_t soil, double pressure) const;
+
+    FlowForcing forcing;
+    SkeletonMotion skeleton;
+    Network network;
+    FlowBoundaries boundaries;
+
+private:
+    void evaluate_rigid(std::span<const double> pressure);
+    void evaluate_deforming(double t, std::span<const double> pressure);
+    void evaluate_links();
+    void evaluate_surface(std::span<const double> pressure);
+    void evaluate_flux(double t);
+
+    const Scene& scene_;
+    std::vector<HydraulicTable> tables_;  // one a soil
+    std::vector<char> held_node_;
+    std::vector<int32_t> soil_of_node_;  // whose table tells wet from dry: that of the largest portion
+
+    // At the last evaluate()
+    std::vector<HydraulicState> state_;                    // per portion
+    std::vector<double> stored_slope_;                     // per node, by its own pressure
+    std::vector<double> inflow_slope_;                     // per node, by its own pressure, of the surface
+    std::vector<std::array<double, 2>> link_slope_;        // per link: d(flow a -> b)/dp_a, /dp_b
+    std::vector<double> pore_stress_, pore_stress_slope_;  // per portion, deforming only
+    std::vector<double> stored_, inflow_, node_pore_volume_;
+    FlowTotals total_rates_{};
+
+    struct Places {
+        int32_t aa, ab, ba, bb;
+    };
+    std::vector<Places> link_places_;  // in the matrix's values
+    std::vector<int32_t> diagonal_;
+};
+
+/// Height of water above a surface node that leaves as run-off or seepage, as a depth over which the soil would conduct it, m: so small
+/// that the pressure it adds (0.1 Pa at an excess of the soil's conductivity) does not count, so large that Newton does not see a wall.
+inline constexpr double weir_thickness = 1e-5;
+
+}  // namespace talus

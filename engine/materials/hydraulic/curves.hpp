@@ -1,0 +1,20 @@
+// The retention and permeability curves themselves, exact; the flow reads them through HydraulicTable.
+#pragma once
+
+#include "materials/hydraulic/parameters.hpp"
+
+namespace talus {
+
+/// S(suction) for suction >= 0 in Pa; maximum_saturation for suction < 0.
+double saturation(const Retention& retention, double suction);
+
+/// S_e(suction) = (S - residual) / (maximum - residual), between 0 and 1.
+double effective_saturation(const Retention& retention, double suction);
+
+/// k_r(suction), between 0 and 1; 1 for suction <= 0.
+double relative_permeability(const Hydraulics& hydraulics, double suction);
+
+/// The suction in Pa over which the retention bends: 1/alpha, or the first positive suction of a table.
+double suction_scale(const Retention& retention);
+
+}  // namespace talus
