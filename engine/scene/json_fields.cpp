@@ -43,7 +43,8 @@ public:
             const std::string member_path = path.empty() ? name : path + "." + name;
             if (!seen.insert(name).second) problems.add(member_path + ": is given twice");
             KJ_IF_MAYBE (field, schema.findFieldByName(member.getName())) {
-                if (field->getProto().getDiscriminantValue() != capnp::schema::Field::NO_DISCRIMINANT) choices.push_back(name);
+                if (field->getProto().getDiscriminantValue() != capnp::schema::Field::NO_DISCRIMINANT)
+                    choices.push_back(name);
                 check(member.getValue(), field->getType(), member_path);
             } else {
                 unknown(member_path, name, names_of(schema.getFields()));
@@ -101,7 +102,8 @@ private:
 
     void unknown(const std::string& path, const std::string& name, const std::vector<std::string>& names) {
         const std::string near = nearest(name, names);
-        problems.add(path + ": is unknown; " + (near.empty() ? "known here: " + joined(names) : "did you mean " + near + "?"));
+        problems.add(path + ": is unknown; " +
+                     (near.empty() ? "known here: " + joined(names) : "did you mean " + near + "?"));
     }
 
     Problems& problems;

@@ -73,7 +73,8 @@ private:
     bool escape() {
         ++at;
         if (peek() != 'u') {
-            return std::string_view("\"\\/bfnrt").find(peek()) != std::string_view::npos || fail("an escape that JSON knows");
+            return std::string_view("\"\\/bfnrt").find(peek()) != std::string_view::npos ||
+                   fail("an escape that JSON knows");
         }
         for (int digit = 0; digit < 4; ++digit) {
             ++at;

@@ -1,10 +1,9 @@
 #include "scene/message.hpp"
 
-#include "error.hpp"
 #include "scene/fields.hpp"
 
-#include <algorithm>
 #include <capnp/dynamic.h>
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
@@ -71,7 +70,7 @@ private:
     }
 
     template <typename Enumeration>
-        requires std::is_enum_v<Enumeration>
+    requires std::is_enum_v<Enumeration>
     static void read(const DynamicValue::Reader& from, Enumeration& to, const std::string& path) {
         to = static_cast<Enumeration>(enumerant(from.as<DynamicEnum>(), path));
     }
@@ -90,7 +89,8 @@ private:
 
     static void read(const DynamicValue::Reader& from, std::vector<Place>& to, const std::string& path) {
         to.clear();
-        for (const auto pair : from.as<Places>()) to.push_back(place(pair, path + "[" + std::to_string(to.size()) + "]"));
+        for (const auto pair : from.as<Places>())
+            to.push_back(place(pair, path + "[" + std::to_string(to.size()) + "]"));
     }
 
     static void read(const DynamicValue::Reader& from, Series& to, const std::string& path) {
@@ -106,7 +106,7 @@ private:
     }
 
     template <typename Struct>
-        requires std::is_class_v<Struct>
+    requires std::is_class_v<Struct>
     static void read(const DynamicValue::Reader& from, Struct& to, const std::string& path) {
         Reader reader(from.as<DynamicStruct>(), path);
         fields(reader, to);
@@ -135,8 +135,8 @@ private:
 
     static int32_t enumerant(const DynamicEnum& value, const std::string& path) {
         if (value.getRaw() < value.getSchema().getEnumerants().size()) return value.getRaw();
-        throw Error(Status::invalid_scene, path + ": is choice " + std::to_string(value.getRaw()) +
-                                               ", unknown to this version of the schema");
+        throw Error(Status::invalid_scene,
+                    path + ": is choice " + std::to_string(value.getRaw()) + ", unknown to this version of the schema");
     }
 
     [[nodiscard]] std::string join(const char* name) const { return path.empty() ? name : path + "." + name; }
@@ -184,10 +184,8 @@ private:
     }
 
     template <typename Enumeration>
-        requires std::is_enum_v<Enumeration>
-    void write(const char* name, Enumeration value) {
-        write_enumerant(name, static_cast<int32_t>(value));
-    }
+    requires std::is_enum_v<Enumeration>
+    void write(const char* name, Enumeration value) { write_enumerant(name, static_cast<int32_t>(value)); }
 
     void write(const char* name, const std::vector<double>& value) { write_array<Numbers>(name, value); }
     void write(const char* name, const std::vector<int32_t>& value) { write_array<Integers>(name, value); }
@@ -200,7 +198,7 @@ private:
     }
 
     template <typename Struct>
-        requires std::is_class_v<Struct>
+    requires std::is_class_v<Struct>
     void write(const char* name, const Struct& value) {
         Writer writer(message.init(name).template as<DynamicStruct>());
         fields(writer, value);

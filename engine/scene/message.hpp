@@ -1,8 +1,11 @@
 // Between the plain structs and a Cap'n Proto message of the schema.
 #pragma once
 
+#include "error.hpp"
 #include "scene/scene.capnp.h"
 #include "scene/scene.hpp"
+
+#include <kj/exception.h>
 
 namespace talus {
 
@@ -12,5 +15,15 @@ namespace talus {
 
 /// Fills an empty message.
 void to_message(const Scene& scene, schema::Scene::Builder message);
+
+/// Calls what uses Cap'n Proto, whose exceptions become Error(invalid_scene); `what` begins the message.
+template <typename Call>
+auto guarded(const char* what, Call call) {
+    try {
+        return call();
+    } catch (const kj::Exception& exception) {
+        throw Error(Status::invalid_scene, what + std::string(exception.getDescription().cStr()));
+    }
+}
 
 }  // namespace talus

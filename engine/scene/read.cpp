@@ -1,6 +1,5 @@
 #include "scene/read.hpp"
 
-#include "error.hpp"
 #include "scene/json_fields.hpp"
 #include "scene/json_syntax.hpp"
 #include "scene/message.hpp"
@@ -8,7 +7,6 @@
 #include <capnp/message.h>
 #include <capnp/serialize.h>
 #include <cstring>
-#include <kj/exception.h>
 
 namespace talus {
 namespace {
@@ -16,17 +14,6 @@ namespace {
 constexpr size_t longest_text = size_t{64} << 20;  // bytes: the codec needs some thirty times as many
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(Status::invalid_scene, message); }
-
-/// No exception of Cap'n Proto leaves.
-template <typename Call>
-auto guarded(const char* what, Call call) {
-    try {
-        return call();
-    } catch (const kj::Exception& exception) {
-        const kj::StringPtr description = exception.getDescription();
-        refuse(what + std::string(description.begin(), description.size()));
-    }
-}
 
 kj::ArrayPtr<const char> as_array(std::string_view text) { return {text.data(), text.size()}; }
 

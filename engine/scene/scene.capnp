@@ -44,7 +44,7 @@ struct Scene {
   physics @2 :Physics;
   # What is simulated; left out: water in a deforming ground.
   gravity @3 :Float64 = 9.81 $limits(unit = "m/s2", low = 1e-3, high = 2000, orZero = true);
-  # Downwards. More than 9.81 is a centrifuge.
+  # Downwards. 0 in a dry ground only: a conductivity is defined by the weight of water.
   water @4 :Water;
   # The pore water; left out: water at 10 degrees Celsius or so.
   soils @5 :List(Soil);
@@ -225,14 +225,14 @@ struct Strength {
   # Cohesion c without suction. Required.
   frictionAngle @2 :Float64 = nan $limits(unit = "degrees", low = 1, high = 60, orZero = true, slips = .angleSlips);
   # Friction angle phi without suction. Required.
-  suctionFrictionAngle @3 :Float64 = nan $limits(unit = "degrees", low = 1, high = 60, orZero = true, slips = .angleSlips);
-  # Required for `fredlund`.
-  cohesionGain @4 :Float64 = nan $limits(unit = "Pa", low = 50, high = 1e10, orZero = true, slips = .pressureSlips);
-  # Largest gain of cohesion by suction. Required for `exponential`.
-  cohesionRate @5 :Float64 = nan $limits(low = 0, high = 1000);
-  # How fast cohesion is gained. Required for `exponential`.
-  frictionGain @6 :Float64 = nan $limits(unit = "degrees", low = 0, high = 60);
-  # Gain of friction angle by a suction of one atmosphere. Required for `exponential`.
+  suctionFrictionAngle @3 :Float64 = 0 $limits(unit = "degrees", low = 1, high = 60, orZero = true, slips = .angleSlips);
+  # Required for `fredlund`, and above 0 there.
+  cohesionGain @4 :Float64 = 0 $limits(unit = "Pa", low = 50, high = 1e10, orZero = true, slips = .pressureSlips);
+  # For `exponential`: largest gain of cohesion by suction. This or frictionGain must be above 0.
+  cohesionRate @5 :Float64 = 0 $limits(low = 0, high = 1000);
+  # For `exponential`: how fast cohesion is gained. Required with a cohesionGain.
+  frictionGain @6 :Float64 = 0 $limits(unit = "degrees", low = 0, high = 60);
+  # For `exponential`: gain of friction angle by a suction of one atmosphere.
 }
 
 enum StrengthModel {
@@ -289,8 +289,8 @@ struct SectionGround {
   # Largest width of a column of cells. Required.
   surfaceCellHeight @4 :Float64 = nan $limits(unit = "m", low = 1e-4, high = 1e5);
   # Height of the uppermost cells. Required.
-  gradedDepth @5 :Float64 = nan $limits(unit = "m", low = 0, high = 1e5);
-  # Down to this depth cells have surfaceCellHeight. Required.
+  gradedDepth @5 :Float64 = 0 $limits(unit = "m", low = 0, high = 1e5);
+  # Down to this depth cells have surfaceCellHeight.
   growth @6 :Float64 = 1.2 $limits(low = 1, high = 4);
   # Ratio of a cell's height to that of the cell above it, below gradedDepth.
   largestCellHeight @7 :Float64 = nan $limits(unit = "m", low = 1e-4, high = 1e5);
