@@ -3,7 +3,7 @@
 #pragma once
 
 #include "error.hpp"
-#include "scene/scene.hpp"
+#include "scene/load.hpp"
 
 #include <atomic>
 #include <cstdint>
