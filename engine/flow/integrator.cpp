@@ -181,8 +181,7 @@ FlowIntegrator::FlowIntegrator(FlowSystem& system, double tolerance)
 
 FlowIntegrator::~FlowIntegrator() = default;
 
-AdvanceResult FlowIntegrator::advance(FlowState& state, double duration,
-                                      const std::function<bool(double)>& after_substep) {
+AdvanceResult FlowIntegrator::advance(FlowState& state, double duration, const AfterSubstep& after_substep) {
     Arkode& ark = *arkode_;
     ark.start(state);
     ARKStepSetStopTime(ark.memory, duration);
@@ -197,7 +196,7 @@ AdvanceResult FlowIntegrator::advance(FlowState& state, double duration,
         ark.accepted = ark.stage;
         ark.accepted_time = t;
         if (t < duration || state.substep <= 0) ARKStepGetCurrentStep(ark.memory, &state.substep);
-        if (after_substep(t / duration)) result = AdvanceResult::cancelled;
+        if (after_substep(t, ark.accepted)) result = AdvanceResult::cancelled;
     }
     long steps = 0, attempts = 0;
     ARKStepGetNumSteps(ark.memory, &steps);

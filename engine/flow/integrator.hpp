@@ -28,6 +28,8 @@ struct FlowState {
     double substep = 0;            ///< s, what the integrator would try next; 0: unknown
 };
 
+using AfterSubstep = std::function<bool(double t, std::span<const double> pressure)>;
+
 enum class AdvanceResult { done, cancelled, failed };
 
 class FlowIntegrator {
@@ -38,9 +40,10 @@ public:
     FlowIntegrator(const FlowIntegrator&) = delete;
     FlowIntegrator& operator=(const FlowIntegrator&) = delete;
 
-    /// Carries `state` over `duration` seconds under the system's forcing. `after_substep(fraction)` may return true to cancel.
+    /// Carries `state` over `duration` seconds under the system's forcing. `after_substep(t, pressure)`, t in s since the advance began and
+    /// the system evaluated there, may return true to cancel.
     /// After cancelled or failed, `state` is at the last finished substep; the caller keeps its own copy to undo.
-    AdvanceResult advance(FlowState& state, double duration, const std::function<bool(double)>& after_substep);
+    AdvanceResult advance(FlowState& state, double duration, const AfterSubstep& after_substep);
 
     /// Brings `state` to the steady state of the system's forcing by ever longer implicit Euler steps. False: none found.
     bool find_steady(FlowState& state);

@@ -12,17 +12,6 @@ namespace {
 
 using Vector = std::array<double, 2>;
 
-struct Tensor {  // symmetric
-    double xx, xy, yy;
-};
-
-Tensor conductivity_tensor(const Conductivity& k) {
-    const double angle = k.dip * std::numbers::pi / 180.0;
-    const double c = std::cos(angle);
-    const double s = std::sin(angle);
-    return {k.along * c * c + k.across * s * s, (k.along - k.across) * c * s, k.along * s * s + k.across * c * c};
-}
-
 double contract(const Vector& a, const Tensor& k, const Vector& b) {
     return a[0] * (k.xx * b[0] + k.xy * b[1]) + a[1] * (k.xy * b[0] + k.yy * b[1]);
 }
@@ -163,6 +152,14 @@ void make_links(Network& network, const Mesh& mesh, const Scene& scene) {
 }
 
 }  // namespace
+
+Tensor conductivity_tensor(const Conductivity& conductivity) {
+    const double angle = conductivity.dip * std::numbers::pi / 180.0;
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    return {conductivity.along * c * c + conductivity.across * s * s, (conductivity.along - conductivity.across) * c * s,
+            conductivity.along * s * s + conductivity.across * c * c};
+}
 
 Network make_network(const Mesh& mesh, const Scene& scene) {
     Network network;

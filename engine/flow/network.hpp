@@ -44,6 +44,14 @@ struct Network {
         joined_volume;  ///< per link, sum over its cells of volume / corners^2, m3: weight of the pressure projection
 };
 
+/// A symmetric tensor in the plane.
+struct Tensor {
+    double xx, xy, yy;
+};
+
+/// Saturated hydraulic conductivity along x and y, m/s.
+Tensor conductivity_tensor(const Conductivity& conductivity);
+
 /// Portions and links of a mesh with their geometry. Pairs that conduct nothing (the diagonals of rectangles) get no link when the
 /// skeleton is rigid: there they can neither conduct later nor need the pressure projection.
 Network make_network(const Mesh& mesh, const Scene& scene);

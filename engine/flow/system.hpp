@@ -68,6 +68,8 @@ public:
     /// Carries a node's pressure by a Newton change, in pressure where it is wet and in saturation where it is dry.
     [[nodiscard]] double moved(size_t node, double pressure, double change) const;
 
+    [[nodiscard]] const HydraulicTable& table(size_t soil) const { return tables_[soil]; }
+
     /// Pore stress pi that loads the skeleton of a soil, Pa: max(p, 0) of net stress, S_e p of Bishop's.
     [[nodiscard]] double pore_stress(size_t soil, double pressure) const;
 

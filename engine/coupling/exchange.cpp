@@ -1,0 +1,217 @@
+// One exchange between flow and motion.
+#include "coupling/simulation.hpp"
+#include "points/quadrature.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+namespace {
+
+constexpr int most_iterations = 40;
+constexpr double well_expected = 10.0;  // disagreement of the first iteration at which the next exchange is as long as this one
+
+class Stopwatch {
+public:
+    explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
+    ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+// How much longer the next exchange may be: the expectation is linear in time, its error quadratic in the exchange's length.
+double growth(double first_disagreement) {
+    return std::clamp(0.9 * std::sqrt(well_expected / std::max(first_disagreement, 1e-12)), 0.2, 4.0);
+}
+
+}  // namespace
+
+Simulation::Exchange Simulation::exchange(double duration, const std::function<bool(double)>& cancelled) {
+    const bool skeleton_moves = equilibrium_ && !state_.equilibrium_lost;
+    FlowState flow = state_.flow;
+    FlowWatch watch = state_.watch;
+    std::vector<Happening> noticed;
+    double first_disagreement = 0;
+    if (flow_) {
+        set_flow_forcing(duration);
+        expect_skeleton(duration);
+    }
+    ++counts.exchanges;
+    for (int iteration = 0;; ++iteration) {
+        if (iteration == most_iterations) return Exchange::disagreed;
+        ++counts.exchange_iterations;
+        if (flow_) {
+            const Stopwatch stopwatch(counts.seconds_flow);
+            flow = state_.flow;
+            watch = state_.watch;
+            noticed.clear();
+            const auto after_substep = [&](double t, std::span<const double> pressure) {
+                notice(state_.time + t, pressure, watch, noticed);
+                return cancelled(t);
+            };
+            const AdvanceResult result = integrator_->advance(flow, duration, after_substep);
+            if (result == AdvanceResult::cancelled) return Exchange::cancelled;
+            if (result == AdvanceResult::failed) return Exchange::flow_stopped;
+        }
+        if (!skeleton_moves) break;
+        outcome_ = find_equilibrium(flow, state_.time + duration);
+        if (outcome_.status != EquilibriumStatus::converged) {
+            equilibrium_->reject();
+            return outcome_.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost : Exchange::disagreed;
+        }
+        if (cancelled(duration)) {
+            equilibrium_->reject();
+            return Exchange::cancelled;
+        }
+        if (!flow_) break;
+        compare_pore_volumes(flow);
+        if (iteration == 0) first_disagreement = disagreement_;
+        if (disagreement_ <= 1.0) break;
+        expect_skeleton_at(duration, end_volume_, end_stress_);
+        equilibrium_->reject();
+    }
+    accept(duration, flow);
+    state_.watch = watch;
+    happenings.insert(happenings.end(), noticed.begin(), noticed.end());
+    if (flow_ && skeleton_moves) state_.exchange_step = duration * growth(first_disagreement);
+    return Exchange::agreed;
+}
+
+void Simulation::set_flow_forcing(double duration) {
+    const FlowBoundaries& boundaries = flow_->boundaries;
+    std::fill(flow_->forcing.rain.begin(), flow_->forcing.rain.end(), 0.0);
+    for (const ZoneShare& share : boundaries.zone_shares)
+        flow_->forcing.rain[static_cast<size_t>(share.surface_node)] += share.area * forcing.rain(static_cast<size_t>(share.zone), state_.time);
+    const auto ramp = [&](int32_t boundary, auto&& value_of) {
+        const double start = value_of(forcing.flow_value(static_cast<size_t>(boundary), state_.time));
+        const double end = value_of(forcing.flow_value(static_cast<size_t>(boundary), state_.time + duration));
+        return Ramp{start, (end - start) / duration};
+    };
+    for (size_t h = 0; h < boundaries.held.size(); ++h) {
+        const HeldNode& held = boundaries.held[h];
+        const bool hydrostatic = scene_.boundaries[static_cast<size_t>(held.boundary)].flow == FlowCondition::hydrostatic;
+        const double height = place_of(held.node)[1];
+        flow_->forcing.held[h] = ramp(held.boundary, [&](double value) {
+            return hydrostatic ? scene_.water.density * scene_.gravity * (value - height) : value;
+        });
+    }
+    for (size_t f = 0; f < boundaries.flux_shares.size(); ++f) {
+        const FluxShare& share = boundaries.flux_shares[f];
+        flow_->forcing.flux[f] = ramp(share.boundary, [&](double value) { return value * share.area; });
+    }
+}
+
+// As it went on last: the expectation that the first iteration starts from.
+void Simulation::expect_skeleton(double duration) {
+    if (!equilibrium_) return;
+    const auto& portions = flow_->network.portions;
+    for (size_t i = 0; i < portions.size(); ++i) {
+        start_stress_[i] = flow_->pore_stress(static_cast<size_t>(portions[i].soil), state_.flow.pressure[static_cast<size_t>(portions[i].node)]);
+        const bool stands = state_.equilibrium_lost;
+        end_volume_[i] = stands ? state_.flow_pore_volume[i] : state_.pore_volume[i] + state_.pore_volume_rate[i] * duration;
+        end_stress_[i] = start_stress_[i] + (stands ? 0.0 : state_.pore_stress_rate[i] * duration);
+        if (stands) flow_->skeleton.softness[i] = 0.0;
+    }
+    expect_skeleton_at(duration, end_volume_, end_stress_);
+}
+
+void Simulation::expect_skeleton_at(double duration, std::span<const double> volume, std::span<const double> stress) {
+    SkeletonMotion& skeleton = flow_->skeleton;
+    for (size_t i = 0; i < volume.size(); ++i) {
+        skeleton.pore_volume[i] = {state_.flow_pore_volume[i], (volume[i] - state_.flow_pore_volume[i]) / duration};
+        skeleton.expected_stress[i] = {start_stress_[i], (stress[i] - start_stress_[i]) / duration};
+    }
+}
+
+EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double until) {
+    const Stopwatch stopwatch(counts.seconds_motion);
+    set_loads(flow, until);
+    const EquilibriumOutcome outcome =
+        equilibrium_->solve({point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_});
+    counts.motion_iterations += outcome.iterations;
+    return outcome;
+}
+
+// The pore volume that the skeleton found, beside the one that the flow took for it; the difference as the pressure that would undo it.
+void Simulation::compare_pore_volumes(const FlowState& flow) {
+    const SkeletonMotion& skeleton = flow_->skeleton;
+    const auto& portions = flow_->network.portions;
+    std::vector<double>& found = found_volume_;
+    found = state_.pore_volume;
+    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
+        const double strain = equilibrium_->volumetric_increment(static_cast<int32_t>(c));
+        for (auto corner = static_cast<size_t>(mesh_.cell_start[c]); corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner)
+            found[static_cast<size_t>(flow_->network.corner_portion[corner])] += strain * flow_->network.corner_volume[corner];
+    }
+    disagreement_ = 0;
+    flow_->evaluate(0.0, flow.pressure);  // for the capacity
+    for (size_t i = 0; i < portions.size(); ++i) {
+        const double pressure = flow.pressure[static_cast<size_t>(portions[i].node)];
+        const double stress = flow_->pore_stress(static_cast<size_t>(portions[i].soil), pressure);
+        const double taken = end_volume_[i] + skeleton.softness[i] * (stress - end_stress_[i]);
+        const HydraulicState& state = flow_->state()[i];
+        const double storage = found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + skeleton.softness[i];
+        disagreement_ = std::max(disagreement_, std::abs(found[i] - taken) / (storage * agreement_pressure_));
+        end_volume_[i] = found[i];
+        end_stress_[i] = stress;
+        taken_volume_[i] = taken;
+    }
+}
+
+void Simulation::accept(double duration, const FlowState& flow) {
+    state_.flow = flow;
+    if (!equilibrium_ || state_.equilibrium_lost) return;
+    if (flow_) {
+        for (size_t i = 0; i < found_volume_.size(); ++i) {
+            state_.pore_volume_rate[i] = (found_volume_[i] - state_.pore_volume[i]) / duration;
+            state_.pore_stress_rate[i] = (end_stress_[i] - start_stress_[i]) / duration;
+        }
+        state_.pore_volume = found_volume_;
+        state_.flow_pore_volume = taken_volume_;
+    }
+    equilibrium_->accept();
+    state_.node_position = mesh_.position;
+    state_.displacement.assign(equilibrium_->displacement().begin(), equilibrium_->displacement().end());
+    refresh_geometry();
+}
+
+void Simulation::notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const {
+    const FlowWatch before = watch;
+    const FlowTotals& rates = flow_->total_rates();
+    const std::span<const HydraulicState> states = flow_->state();
+    watch.air = 0;
+    for (size_t i = 0; i < states.size(); ++i) {
+        const Retention& retention = scene_.soils[static_cast<size_t>(flow_->network.portions[i].soil)].hydraulics.retention;
+        watch.air += flow_->skeleton.pore_volume[i].start * (retention.maximum_saturation - states[i].saturation);
+    }
+    watch.gain = rates[rain_total] + rates[inflow_total] - rates[run_off_total] - rates[seepage_total] - rates[drained_total];
+    double highest = -std::numeric_limits<double>::infinity();
+    int32_t wettest = 0;
+    for (const SurfaceNode& surface : flow_->boundaries.surface) {
+        const double p = pressure[static_cast<size_t>(surface.node)];
+        if (p > highest) wettest = surface.node;
+        highest = std::max(highest, p);
+    }
+    constexpr double full = -1.0;        // Pa: no suction to speak of
+    constexpr double standing = 10.0;    // Pa: a millimetre of water
+    constexpr double noticeable = 0.01;  // of the rain
+    watch.time = time;
+    watch.is_saturated = *std::min_element(pressure.begin(), pressure.end()) >= full;
+    watch.is_ponding = highest > standing || rates[run_off_total] > noticeable * rates[rain_total];
+    watch.is_seeping = rates[seepage_total] > 0 && rates[seepage_total] > noticeable * rates[rain_total];
+    if (watch.is_saturated && !before.is_saturated) {
+        const double filled = before.gain > 0 ? before.time + before.air / before.gain : time;
+        noticed.push_back({HappeningKind::saturated, std::clamp(filled, before.time, time), place_of(wettest), 0.0});
+    }
+    if (watch.is_ponding != before.is_ponding)
+        noticed.push_back({watch.is_ponding ? HappeningKind::ponding_started : HappeningKind::ponding_ended, time, place_of(wettest), rates[run_off_total]});
+    if (watch.is_seeping && !before.is_seeping) noticed.push_back({HappeningKind::seepage_started, time, place_of(wettest), rates[seepage_total]});
+}
+
+}  // namespace talus

@@ -1,0 +1,39 @@
+// Everything that changes in time: what a failed step puts back.
+#pragma once
+
+#include "flow/integrator.hpp"
+#include "points/points.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace talus {
+
+/// What the flow was seen doing at the last substep, so that a change is told once.
+struct FlowWatch {
+    bool is_saturated = false;  ///< no pore holds air
+    bool is_ponding = false;    ///< water stands on the surface or runs off
+    bool is_seeping = false;    ///< water comes out of the surface
+    double time = 0;            ///< s
+    double air = 0;             ///< m3 of pores without water
+    double gain = 0;            ///< m3/s net inflow
+};
+
+struct GroundState {
+    double time = 0;                      ///< s
+    std::vector<double> node_position;    ///< nodes x dimension, m
+    std::vector<double> displacement;     ///< nodes x dimension, m; empty: rigid
+    std::vector<double> velocity;         ///< nodes x dimension, m/s, mean over the last step; empty: rigid
+    Points points;
+    FlowState flow;                       ///< empty: dry
+    std::vector<double> pore_volume;      ///< per portion, m3: what the ground has
+    std::vector<double> flow_pore_volume; ///< per portion, m3: what the flow last took for it
+    std::vector<double> pore_volume_rate; ///< per portion, m3/s, over the last exchange: the next one's prediction
+    std::vector<double> pore_stress_rate; ///< per portion, Pa/s, likewise
+    double exchange_step = 0;             ///< s, what the next exchange between flow and motion would take; 0: unknown
+    bool equilibrium_lost = false;        ///< the skeleton stands as it was when it failed
+    FlowWatch watch;
+    bool rain_is_out = false;
+};
+
+}  // namespace talus

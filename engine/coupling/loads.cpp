@@ -1,0 +1,125 @@
+// What flow and boundaries load the skeleton with, and what the points take from the nodes.
+#include "coupling/simulation.hpp"
+#include "points/quadrature.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+void Simulation::update_points() {
+    Points& points = state_.points;
+    if (!flow_) return;
+    const double unit_weight = scene_.water.density * scene_.gravity;
+    interpolate(mesh_, points, mesh_.cell_nodes, state_.flow.pressure, points.pressure);
+    interpolate_gradient(mesh_, points, state_.flow.pressure, points.darcy_flux);
+    const auto dimension = static_cast<size_t>(points.dimension);
+    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
+        const auto soil = static_cast<size_t>(mesh_.cell_soil[c]);
+        const double factor = conductivity_factor_.empty() ? 1.0 : conductivity_factor_[c];
+        const Tensor k = conductivity_tensor(scene_.soils[soil].hydraulics.conductivity);
+        for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]); ++p) {
+            const HydraulicState here = flow_->table(soil).at(points.pressure[p]);
+            points.saturation[p] = here.saturation;
+            points.porosity[p] = porosity(p);
+            double* flux = &points.darcy_flux[p * dimension];  // holds the pressure's gradient
+            const double mobility = -factor * here.permeability;
+            if (dimension == 1) {
+                flux[0] = mobility * k.yy * (flux[0] / unit_weight + 1.0);
+            } else {
+                const double slope_x = flux[0] / unit_weight;
+                const double slope_y = flux[1] / unit_weight + 1.0;
+                flux[0] = mobility * (k.xx * slope_x + k.xy * slope_y);
+                flux[1] = mobility * (k.xy * slope_x + k.yy * slope_y);
+            }
+        }
+    }
+}
+
+// Grains keep their volume, so that all change of volume is of the pores: D n / D t = (1 - n) div v.
+double Simulation::porosity(size_t point) const {
+    const double initial = scene_.soils[static_cast<size_t>(state_.points.soil[point])].porosity;
+    return 1.0 - (1.0 - initial) * initial_volume_[point] / state_.points.volume[point];
+}
+
+void Simulation::set_loads(const FlowState& flow, double until) {
+    const Points& points = state_.points;
+    if (flow_) {
+        interpolate(mesh_, points, mesh_.cell_nodes, flow.pressure, point_pressure_);
+        const auto& portions = flow_->network.portions;
+        for (size_t i = 0; i < portions.size(); ++i)
+            portion_stress_[i] = flow_->pore_stress(static_cast<size_t>(portions[i].soil), flow.pressure[static_cast<size_t>(portions[i].node)]);
+        interpolate(mesh_, points, flow_->network.corner_portion, portion_stress_, point_pore_stress_);
+    }
+    for (size_t p = 0; p < static_cast<size_t>(points.count); ++p) {
+        const auto number = static_cast<size_t>(points.soil[p]);
+        const Soil& soil = scene_.soils[number];
+        double suction = 0;
+        double effective_saturation = 1;
+        point_density_[p] = soil.dry_density * initial_volume_[p] / points.volume[p];
+        if (flow_) {
+            const Retention& retention = soil.hydraulics.retention;
+            const double saturation = flow_->table(number).at(point_pressure_[p]).saturation;
+            const double water_density = scene_.water.density * std::exp(point_pressure_[p] / scene_.water.bulk_modulus);
+            point_density_[p] += porosity(p) * saturation * water_density;
+            suction = std::max(0.0, -point_pressure_[p]);
+            effective_saturation =
+                (saturation - retention.residual_saturation) / (retention.maximum_saturation - retention.residual_saturation);
+        }
+        point_strength_[p] = shear_strength(soil.solid.strength, suction, effective_saturation);
+    }
+    std::fill(node_force_.begin(), node_force_.end(), 0.0);
+    for (const GivenTraction& given : given_tractions_) add_traction(given, until);
+    for (const GivenDisplacement& given : given_displacements_)
+        prescribed_displacement_[given.freedom] =
+            forcing.motion_value(given.boundary, given.component, until) - state_.displacement[given.freedom];
+}
+
+void Simulation::add_traction(const GivenTraction& given, double time) {
+    const Facet& facet = mesh_.facets[given.facet];
+    if (mesh_.dimension == 1) {
+        node_force_[static_cast<size_t>(facet.node_a)] += forcing.motion_value(given.boundary, 1, time);
+        return;
+    }
+    const auto a = 2 * static_cast<size_t>(facet.node_a);
+    const auto b = 2 * static_cast<size_t>(facet.node_b);
+    const double length = std::hypot(mesh_.position[b] - mesh_.position[a], mesh_.position[b + 1] - mesh_.position[a + 1]);
+    for (size_t component = 0; component < 2; ++component) {
+        const double force = 0.5 * length * forcing.motion_value(given.boundary, component, time);
+        node_force_[a + component] += force;
+        node_force_[b + component] += force;
+    }
+}
+
+void Simulation::refresh_geometry() {
+    if (!flow_ || !equilibrium_) return;
+    const Points& points = state_.points;
+    for (size_t c = 0; c < conductivity_factor_.size(); ++c) {
+        const Soil& soil = scene_.soils[static_cast<size_t>(mesh_.cell_soil[c])];
+        conductivity_factor_[c] = 1.0;
+        if (soil.hydraulics.conductivity.porosity_dependence == PorosityDependence::none) continue;
+        double initial = 0;
+        double now = 0;
+        for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]); ++p) {
+            initial += initial_volume_[p];
+            now += points.volume[p];
+        }
+        // Kozeny (1927), Carman (1937): K grows as n^3 / (1 - n)^2.
+        const double n = 1.0 - (1.0 - soil.porosity) * initial / now;
+        const auto kozeny_carman = [](double porosity) { return porosity * porosity * porosity / ((1.0 - porosity) * (1.0 - porosity)); };
+        conductivity_factor_[c] = kozeny_carman(n) / kozeny_carman(soil.porosity);
+    }
+    talus::refresh_geometry(flow_->network, mesh_, scene_, conductivity_factor_);
+    flow_->boundaries = make_flow_boundaries(mesh_, reference_mesh_, scene_);
+    for (size_t i = 0; i < flow_->skeleton.softness.size(); ++i) flow_->skeleton.softness[i] = 0.0;
+    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c)
+        for (auto corner = static_cast<size_t>(mesh_.cell_start[c]); corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner)
+            flow_->skeleton.softness[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
+                flow_->network.corner_volume[corner] * softness_[static_cast<size_t>(mesh_.cell_soil[c])];
+    for (size_t l = 0; l < flow_->network.links.size(); ++l) {
+        const auto soil = static_cast<size_t>(flow_->network.portions[static_cast<size_t>(flow_->network.links[l].portion_a)].soil);
+        flow_->skeleton.projection[l] = flow_->network.joined_volume[l] * projection_softness_[soil];
+    }
+}
+
+}  // namespace talus

@@ -1,0 +1,83 @@
+#include "coupling/simulation.hpp"
+
+#include "error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace talus {
+namespace {
+
+constexpr double first_exchange = 1e-4;    // of the host's first step: the start may be a sudden load
+constexpr double shortest_exchange = 1e-9; // of the host's step
+constexpr double failure_window = 1e-3;    // of the host's step: how closely the time of failure is found
+
+std::string at_time(double time) { return "t = " + std::to_string(time) + " s: "; }
+
+}  // namespace
+
+// The macro step. Everything that a host step does is named here once.
+bool Simulation::advance(double until, const std::function<bool(double)>& cancelled) {
+    const double from = state_.time;
+    const double whole = until - from;
+    const std::vector<double> displacement_before = state_.displacement;
+    if (state_.exchange_step <= 0) state_.exchange_step = equilibrium_ && flow_ ? first_exchange * whole : whole;
+    while (state_.time < until) {
+        const double stop = forcing.next_break(state_.time, until);
+        const double left = stop - state_.time;
+        const bool is_last = state_.exchange_step >= left || !equilibrium_ || !flow_;
+        const double duration = is_last ? left : std::min(state_.exchange_step, 0.5 * left);
+        const auto watched = [&](double t) { return cancelled((state_.time + t - from) / whole); };
+        switch (exchange(duration, watched)) {
+            case Exchange::agreed: state_.time = is_last ? stop : state_.time + duration; break;
+            case Exchange::cancelled: return false;
+            case Exchange::disagreed: state_.exchange_step = 0.25 * duration; break;
+            case Exchange::equilibrium_lost:
+                if (duration <= failure_window * whole) lose_equilibrium();
+                state_.exchange_step = 0.25 * duration;
+                break;
+            case Exchange::flow_stopped:
+                throw Error(Status::not_converged, at_time(state_.time) + "the flow's equations were not solved within " +
+                                                       std::to_string(duration) + " s; this says nothing about the slope");
+        }
+        if (state_.exchange_step < shortest_exchange * whole)
+            throw Error(Status::not_converged, at_time(state_.time) + "the skeleton's equilibrium was neither found nor shown to be lost; " +
+                                                   "this says nothing about the slope");
+    }
+    for (size_t i = 0; i < state_.velocity.size(); ++i) state_.velocity[i] = (state_.displacement[i] - displacement_before[i]) / whole;
+    update_points();
+    return true;
+}
+
+void Simulation::lose_equilibrium() {
+    state_.equilibrium_lost = true;
+    happenings.push_back({HappeningKind::loss_of_equilibrium, state_.time, outcome_.collapse.place, outcome_.collapse.displacement});
+}
+
+void Simulation::restore(const GroundState& state) {
+    state_ = state;
+    mesh_.position = state.node_position;
+    if (equilibrium_) equilibrium_->restore(state.displacement);
+    refresh_geometry();
+}
+
+double Simulation::water_now() const {
+    flow_->evaluate(0.0, state_.flow.pressure);
+    double sum = 0;
+    for (const double water : flow_->stored()) sum += water;
+    return sum;
+}
+
+double Simulation::least_factor_of_safety() const {
+    const double least = equilibrium_ ? equilibrium_->least_factor_of_safety() : std::numeric_limits<double>::infinity();
+    return std::isfinite(least) ? least : 0.0;
+}
+
+Place Simulation::place_of(int32_t node) const {
+    const auto index = static_cast<size_t>(node);
+    if (mesh_.dimension == 1) return {0.0, mesh_.position[index]};
+    return {mesh_.position[2 * index], mesh_.position[2 * index + 1]};
+}
+
+}  // namespace talus

@@ -1,0 +1,136 @@
+// Flow and motion of one ground, carried through time together.
+//
+// One host step is a sequence of exchanges. In each, the flow runs ahead with the pore volume that the skeleton is expected to have, the
+// skeleton finds its equilibrium under the pressures that result, and the two repeat until they agree (fixed-stress split: Kim, Tchelepi &
+// Juanes, Comput. Methods Appl. Mech. Eng. 200, 2011). The exchanges' length follows from how well the expectation was met.
+#pragma once
+
+#include "coupling/forcing.hpp"
+#include "coupling/ground_state.hpp"
+#include "flow/integrator.hpp"
+#include "ground/mesh.hpp"
+#include "motion/equilibrium.hpp"
+#include "scene/scene.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// Counts and seconds of one host step.
+struct StepCounts {
+    int64_t exchanges = 0;
+    int64_t exchange_iterations = 0;
+    int64_t motion_iterations = 0;
+    double seconds_flow = 0;
+    double seconds_motion = 0;
+};
+
+enum class HappeningKind { saturated, ponding_started, ponding_ended, seepage_started, loss_of_equilibrium, rain_ended };
+
+/// Something the host should know, noticed inside a step.
+struct Happening {
+    HappeningKind kind;
+    double time;   ///< s
+    Place place;   ///< m
+    double value;  ///< of loss_of_equilibrium: largest displacement of the moving mass while it was watched, m
+};
+
+class Simulation {
+public:
+    /// Builds the ground and its initial state. Throws Error(invalid_scene) where there is none.
+    Simulation(const Scene& scene, double tolerance);
+
+    /// Carries the state to `until` (s). False when `cancelled(fraction)` said so. Throws Error(not_converged) when a solver stops. In both
+    /// cases the caller puts the state back with restore().
+    bool advance(double until, const std::function<bool(double)>& cancelled);
+
+    [[nodiscard]] GroundState save() const { return state_; }
+    void restore(const GroundState& state);
+
+    Forcing forcing;
+    std::vector<Happening> happenings;  ///< of the last advance; the caller clears it
+    StepCounts counts;                  ///< likewise
+
+    [[nodiscard]] const GroundState& state() const { return state_; }
+    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+    [[nodiscard]] const Mesh& reference_mesh() const { return reference_mesh_; }
+    [[nodiscard]] const FlowSystem* flow() const { return flow_.get(); }
+    [[nodiscard]] FlowStatistics flow_statistics() const { return integrator_ ? integrator_->statistics() : FlowStatistics{}; }
+    [[nodiscard]] double water_now() const;      ///< m3, in the pores and ponded, from the pressures
+    [[nodiscard]] double initial_water() const { return initial_water_; }
+    [[nodiscard]] double least_factor_of_safety() const;  ///< 0: none known
+    [[nodiscard]] const std::vector<double>& pore_stress() const { return point_pore_stress_; }  ///< per point, Pa; empty: rigid or dry
+    [[nodiscard]] size_t motion_unknowns() const { return motion_unknowns_; }
+
+private:
+    enum class Exchange { agreed, cancelled, disagreed, flow_stopped, equilibrium_lost };
+
+    // initial state (initial.cpp)
+    void make_flow();
+    void make_motion();
+    std::vector<uint8_t> hold_nodes();
+    [[nodiscard]] bool holds(const Boundary& boundary, const Facet& facet, size_t axis) const;
+    void set_initial_flow();
+    void find_steady_flow();
+    void set_initial_stress();
+
+    // the exchange (exchange.cpp)
+    Exchange exchange(double duration, const std::function<bool(double)>& cancelled);
+    void lose_equilibrium();
+    void set_flow_forcing(double duration);
+    void expect_skeleton(double duration);
+    void expect_skeleton_at(double duration, std::span<const double> volume, std::span<const double> stress);
+    void compare_pore_volumes(const FlowState& flow);
+    void accept(double duration, const FlowState& flow);
+    EquilibriumOutcome find_equilibrium(const FlowState& flow, double until);
+    // what passes between them (loads.cpp)
+    void set_loads(const FlowState& flow, double until);
+    [[nodiscard]] double porosity(size_t point) const;
+    void refresh_geometry();
+    void update_points();
+    void notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const;
+    [[nodiscard]] Place place_of(int32_t node) const;
+
+    const Scene& scene_;
+    double tolerance_;
+    Mesh mesh_;
+    Mesh reference_mesh_;
+    GroundState state_;
+    std::unique_ptr<FlowSystem> flow_;            // empty: dry
+    std::unique_ptr<FlowIntegrator> integrator_;  // empty: dry
+    std::unique_ptr<Equilibrium> equilibrium_;    // empty: rigid
+    double initial_water_ = 0;
+    size_t motion_unknowns_ = 0;
+    double agreement_pressure_ = 0;              // Pa: pore volumes agree where the difference moves the pressure by less
+    struct GivenDisplacement {
+        size_t freedom, boundary, component;
+    };
+    struct GivenTraction {
+        size_t facet, boundary;
+    };
+    void add_traction(const GivenTraction& given, double time);
+
+    std::vector<double> softness_;               // per soil, 1/Pa: the fixed-stress split's
+    std::vector<double> projection_softness_;    // per soil, 1/Pa: the pressure projection's
+    std::vector<GivenDisplacement> given_displacements_;
+    std::vector<GivenTraction> given_tractions_;
+
+    // Of the exchange under way
+    std::vector<double> portion_stress_, point_pressure_;
+    std::vector<double> start_stress_;           // per portion, Pa
+    std::vector<double> end_stress_;             // per portion, Pa, as the flow found it
+    std::vector<double> end_volume_;             // per portion, m3, as the skeleton is expected to have it
+    std::vector<double> taken_volume_;           // per portion, m3, as the flow took it
+    std::vector<double> found_volume_;           // per portion, m3, as the skeleton found it
+    double disagreement_ = 0;                    // largest difference of the two's pore volumes, over the one that is let stand
+    std::vector<double> point_pore_stress_, point_density_, node_force_, prescribed_displacement_;
+    std::vector<ShearStrength> point_strength_;
+    std::vector<double> initial_volume_;         // per point, m3
+    std::vector<double> conductivity_factor_;    // per cell; empty: 1
+    EquilibriumOutcome outcome_;
+};
+
+}  // namespace talus
