@@ -53,7 +53,8 @@ struct Quad4 {
     using Gradients = std::array<std::array<double, dimension>, nodes>;
 
     static constexpr double gauss = Line2::gauss;
-    static constexpr std::array<Natural, points> point = {{{-gauss, -gauss}, {gauss, -gauss}, {gauss, gauss}, {-gauss, gauss}}};
+    static constexpr std::array<Natural, points> point = {
+        {{-gauss, -gauss}, {gauss, -gauss}, {gauss, gauss}, {-gauss, gauss}}};
     static constexpr std::array<double, points> weight = {1, 1, 1, 1};
     static constexpr Natural centre = {0, 0};
 
@@ -79,7 +80,7 @@ template <class Shape>
 struct Mapped {
     typename Shape::Values value;        ///< N, -
     typename Shape::Gradients gradient;  ///< dN/dx, 1/m
-    double determinant;                  ///< of dx/dxi: times the quadrature weight it is the point's length (m) or area (m2)
+    double determinant;  ///< of dx/dxi: times the quadrature weight it is the point's length (m) or area (m2)
 };
 
 /// N, dN/dx and det(dx/dxi) at a natural place of the cell whose nodes are at `places`.
@@ -111,7 +112,8 @@ constexpr Mapped<Shape> map_shape(const NodePlaces<Shape>& places, const typenam
 
 /// Place in the ground (m) of a natural place of a cell.
 template <class Shape>
-constexpr std::array<double, Shape::dimension> place_in_cell(const NodePlaces<Shape>& places, const typename Shape::Natural& at) {
+constexpr std::array<double, Shape::dimension> place_in_cell(const NodePlaces<Shape>& places,
+                                                             const typename Shape::Natural& at) {
     const auto value = Shape::values(at);
     std::array<double, Shape::dimension> place{};
     for (size_t i = 0; i < Shape::nodes; ++i) {

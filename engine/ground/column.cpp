@@ -20,8 +20,9 @@ std::vector<int32_t> layer_boundaries(const ColumnGround& column) {
         const double top = k == 0 ? column.height : column.layers[k].top;
         const double bottom = k + 1 < count ? column.layers[k + 1].top : 0;
         if (!(top - bottom >= spacing * (1 - 1e-9))) {
-            throw Error(Status::invalid_scene, "ground.column.layers[" + std::to_string(k) + "]: is " + number_text(top - bottom) +
-                                                   " m thick, thinner than a cell (" + number_text(spacing) +
+            throw Error(Status::invalid_scene, "ground.column.layers[" + std::to_string(k) + "]: is " +
+                                                   number_text(top - bottom) + " m thick, thinner than a cell (" +
+                                                   number_text(spacing) +
                                                    " m); give the column more cells or the layer more thickness");
         }
         boundary[k] = std::max(below + 1, static_cast<int32_t>(std::lround(top / spacing)));
@@ -57,7 +58,7 @@ Mesh build_column(const Scene& scene) {
         first = boundary[k];
         bottom = top;
     }
-    check_mesh(mesh);
+    check_mesh(mesh, "ground.column");
     set_sides(mesh);
     return mesh;
 }

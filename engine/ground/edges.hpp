@@ -17,7 +17,9 @@ struct Edge {
     int32_t cell;
     [[nodiscard]] int32_t low() const { return std::min(a, b); }
     [[nodiscard]] int32_t high() const { return std::max(a, b); }
-    [[nodiscard]] bool joins_same_nodes(const Edge& other) const { return low() == other.low() && high() == other.high(); }
+    [[nodiscard]] bool joins_same_nodes(const Edge& other) const {
+        return low() == other.low() && high() == other.high();
+    }
 };
 
 /// Every cell's edges, those between the same two nodes side by side.
@@ -30,7 +32,8 @@ struct Edge {
         const int32_t last = mesh.cell_start[c + 1] - 1;
         for (int32_t i = first; i <= last; ++i) {
             const int32_t next = i == last ? first : i + 1;
-            edges.push_back({mesh.cell_nodes[static_cast<size_t>(i)], mesh.cell_nodes[static_cast<size_t>(next)], cell});
+            edges.push_back(
+                {mesh.cell_nodes[static_cast<size_t>(i)], mesh.cell_nodes[static_cast<size_t>(next)], cell});
         }
     }
     std::sort(edges.begin(), edges.end(), [](const Edge& left, const Edge& right) {

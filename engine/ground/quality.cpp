@@ -1,6 +1,5 @@
 #include "ground/quality.hpp"
 
-#include "background/shape.hpp"
 #include "error.hpp"
 #include "ground/edges.hpp"
 #include "ground/text.hpp"
@@ -15,11 +14,11 @@
 namespace talus {
 namespace {
 
-[[noreturn]] void refuse_cell(size_t cell, const std::string& what) {
-    throw Error(Status::invalid_scene, "ground: cell " + std::to_string(cell) + " " + what);
-}
+[[noreturn]] void refuse(const std::string& what) { throw Error(Status::invalid_scene, what); }
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(Status::invalid_scene, "ground: " + what); }
+[[noreturn]] void refuse_cell(size_t cell, const std::string& what) {
+    refuse("cell " + std::to_string(cell) + " " + what);
+}
 
 // --- places in messages ----------------------------------------------------------------------------------------------
 
@@ -36,10 +35,12 @@ std::string cell_text(const Mesh& mesh, int32_t cell) {
     std::array<double, 2> centre{};
     for (size_t i = first; i < last; ++i) {
         for (size_t k = 0; k < dimension; ++k) {
-            centre[k] += mesh.position[static_cast<size_t>(mesh.cell_nodes[i]) * dimension + k] / static_cast<double>(last - first);
+            centre[k] += mesh.position[static_cast<size_t>(mesh.cell_nodes[i]) * dimension + k] /
+                         static_cast<double>(last - first);
         }
     }
-    const std::string at = mesh.dimension == 1 ? "y = " + number_text(centre[0]) + " m" : place_text(centre[0], centre[1]);
+    const std::string at =
+        mesh.dimension == 1 ? "y = " + number_text(centre[0]) + " m" : place_text(centre[0], centre[1]);
     return "cell " + std::to_string(cell) + " at " + at;
 }
 
@@ -58,11 +59,12 @@ void check_sizes(const Mesh& mesh) {
         refuse("position has " + std::to_string(mesh.position.size()) + " numbers, not two a node");
     }
     if (mesh.cell_start.size() != cells + 1) {
-        refuse("cell_start has " + std::to_string(mesh.cell_start.size()) + " entries, not one more than the " + std::to_string(cells) +
-               " cells that cell_soil has");
+        refuse("cell_start has " + std::to_string(mesh.cell_start.size()) + " entries, not one more than the " +
+               std::to_string(cells) + " cells that cell_soil has");
     }
     if (mesh.cell_start.front() != 0 || mesh.cell_start.back() != static_cast<int32_t>(mesh.cell_nodes.size())) {
-        refuse("cell_start must begin with 0 and end with the number of cell_nodes, " + std::to_string(mesh.cell_nodes.size()));
+        refuse("cell_start must begin with 0 and end with the number of cell_nodes, " +
+               std::to_string(mesh.cell_nodes.size()));
     }
 }
 
@@ -73,31 +75,38 @@ void check_cell_entries(const Mesh& mesh) {
     for (size_t cell = 0; cell < mesh.cell_soil.size(); ++cell) {
         const int64_t count = static_cast<int64_t>(mesh.cell_start[cell + 1]) - mesh.cell_start[cell];
         if (count < least || count > most) {
-            refuse_cell(cell, "has " + std::to_string(count) + " nodes; cells have " + (mesh.dimension == 1 ? "2" : "3 or 4"));
+            refuse_cell(
+                cell, "has " + std::to_string(count) + " nodes; cells have " + (mesh.dimension == 1 ? "2" : "3 or 4"));
         }
-        if (mesh.cell_start[cell + 1] > static_cast<int32_t>(mesh.cell_nodes.size())) refuse_cell(cell, "ends beyond cell_nodes");
+        if (mesh.cell_start[cell + 1] > static_cast<int32_t>(mesh.cell_nodes.size()))
+            refuse_cell(cell, "ends beyond cell_nodes");
         const auto first = mesh.cell_nodes.begin() + mesh.cell_start[cell];
         const auto last = mesh.cell_nodes.begin() + mesh.cell_start[cell + 1];
         for (auto node = first; node != last; ++node) {
             if (*node < 0 || *node >= node_count) {
-                refuse_cell(cell, "has node " + std::to_string(*node) + "; nodes are 0 to " + std::to_string(node_count - 1));
+                refuse_cell(cell,
+                            "has node " + std::to_string(*node) + "; nodes are 0 to " + std::to_string(node_count - 1));
             }
-            if (std::find(first, node, *node) != node) refuse_cell(cell, "has node " + std::to_string(*node) + " twice");
+            if (std::find(first, node, *node) != node)
+                refuse_cell(cell, "has node " + std::to_string(*node) + " twice");
         }
-        if (mesh.cell_soil[cell] < 0) refuse_cell(cell, "has soil " + std::to_string(mesh.cell_soil[cell]) + "; soils are numbered from 0");
+        if (mesh.cell_soil[cell] < 0)
+            refuse_cell(cell, "has soil " + std::to_string(mesh.cell_soil[cell]) + "; soils are numbered from 0");
     }
 }
 
 void check_nodes(const Mesh& mesh) {
     for (size_t i = 0; i < mesh.position.size(); ++i) {
         if (!std::isfinite(mesh.position[i])) {
-            refuse("node " + std::to_string(i / static_cast<size_t>(mesh.dimension)) + " has a place that is not a finite number");
+            refuse("node " + std::to_string(i / static_cast<size_t>(mesh.dimension)) +
+                   " has a place that is not a finite number");
         }
     }
     std::vector<char> used(static_cast<size_t>(mesh.node_count()), 0);
     for (const int32_t node : mesh.cell_nodes) used[static_cast<size_t>(node)] = 1;
     const auto unused = std::find(used.begin(), used.end(), 0);
-    if (unused != used.end()) refuse(node_text(mesh, static_cast<int32_t>(unused - used.begin())) + " belongs to no cell");
+    if (unused != used.end())
+        refuse(node_text(mesh, static_cast<int32_t>(unused - used.begin())) + " belongs to no cell");
 }
 
 /// Twice the areas of the triangles at the corners of a plane cell over the square of its longest edge: positive at all of them
@@ -105,7 +114,9 @@ void check_nodes(const Mesh& mesh) {
 double least_corner(const Mesh& mesh, int32_t cell) {
     const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
     const size_t count = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell) + 1]) - first;
-    const auto place = [&](size_t corner) { return &mesh.position[2 * static_cast<size_t>(mesh.cell_nodes[first + corner % count])]; };
+    const auto place = [&](size_t corner) {
+        return &mesh.position[2 * static_cast<size_t>(mesh.cell_nodes[first + corner % count])];
+    };
     double least = std::numeric_limits<double>::infinity();
     double longest = 0;
     for (size_t corner = 0; corner < count; ++corner) {
@@ -122,14 +133,17 @@ void check_shapes(const Mesh& mesh) {
     constexpr double flat = 1e-10;
     for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
         if (mesh.dimension == 1) {
-            const auto places = gather_places<Line2>(mesh.position.data(), &mesh.cell_nodes[static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)])]);
-            if (!(places[1][0] > places[0][0])) refuse(cell_text(mesh, cell) + " has no height or goes downwards");
+            const size_t bottom = 2 * static_cast<size_t>(cell);
+            const double y = mesh.position[static_cast<size_t>(mesh.cell_nodes[bottom])];
+            if (!(mesh.position[static_cast<size_t>(mesh.cell_nodes[bottom + 1])] > y))
+                refuse(cell_text(mesh, cell) + " has no height or goes downwards");
             continue;
         }
         const double least = least_corner(mesh, cell);
         if (least > flat) continue;
-        refuse(cell_text(mesh, cell) + (least < -flat ? " is inverted, folded or not convex; nodes go counter-clockwise around convex cells"
-                                                      : " is flat: a corner has no area"));
+        refuse(cell_text(mesh, cell) +
+               (least < -flat ? " is inverted, folded or not convex; nodes go counter-clockwise around convex cells"
+                              : " is flat: a corner has no area"));
     }
 }
 
@@ -145,7 +159,8 @@ void check_bin_duplicates(const Mesh& mesh, double near, double offset) {
     const auto dimension = static_cast<size_t>(mesh.dimension);
     for (size_t i = 0; i < mesh.position.size(); i += dimension) {
         const double x = dimension == 1 ? 0 : mesh.position[i];
-        entries.push_back({std::floor(x / near + offset), mesh.position[i + dimension - 1], static_cast<int32_t>(i / dimension)});
+        entries.push_back(
+            {std::floor(x / near + offset), mesh.position[i + dimension - 1], static_cast<int32_t>(i / dimension)});
     }
     std::sort(entries.begin(), entries.end(), [](const Entry& left, const Entry& right) {
         return std::tuple(left.bin, left.y, left.node) < std::tuple(right.bin, right.y, right.node);
@@ -177,7 +192,9 @@ void check_duplicates(const Mesh& mesh) {
 
 class Pieces {
 public:
-    explicit Pieces(int32_t count) : parent_(static_cast<size_t>(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
+    explicit Pieces(int32_t count) : parent_(static_cast<size_t>(count)) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+    }
     void join(int32_t a, int32_t b) { parent_[static_cast<size_t>(root(a))] = root(b); }
     int32_t root(int32_t a) {
         while (parent_[static_cast<size_t>(a)] != a) {
@@ -195,7 +212,8 @@ private:
 void check_one_piece(const Mesh& mesh, Pieces& pieces) {
     for (int32_t cell = 1; cell < mesh.cell_count(); ++cell) {
         if (pieces.root(cell) == pieces.root(0)) continue;
-        refuse("the mesh is in several pieces: " + cell_text(mesh, cell) + " is not connected by edges to " + cell_text(mesh, 0));
+        refuse("the mesh is in several pieces: " + cell_text(mesh, cell) + " is not connected by edges to " +
+               cell_text(mesh, 0));
     }
 }
 
@@ -208,8 +226,8 @@ void check_plane_topology(const Mesh& mesh) {
         while (next < edges.size() && edges[next].joins_same_nodes(edges[i])) ++next;
         if (next - i > 2) refuse(std::to_string(next - i) + " cells share" + edge_text(mesh, edges[i]));
         if (next - i == 2 && edges[i].a == edges[i + 1].a) {
-            refuse(cell_text(mesh, edges[i].cell) + " and " + cell_text(mesh, edges[i + 1].cell) + " lie on the same side of" +
-                   edge_text(mesh, edges[i]));
+            refuse(cell_text(mesh, edges[i].cell) + " and " + cell_text(mesh, edges[i + 1].cell) +
+                   " lie on the same side of" + edge_text(mesh, edges[i]));
         }
         if (next - i == 2) pieces.join(edges[i].cell, edges[i + 1].cell);
         if (next - i == 1 && ++boundary_starts[static_cast<size_t>(edges[i].a)] > 1) {
@@ -224,20 +242,25 @@ void check_plane_topology(const Mesh& mesh) {
 void check_column_topology(const Mesh& mesh) {
     for (size_t i = 0; i < mesh.cell_nodes.size(); ++i) {
         const auto expected = static_cast<int32_t>((i + 1) / 2);
-        if (mesh.cell_nodes[i] != expected) refuse(cell_text(mesh, static_cast<int32_t>(i / 2)) + " does not stand on the cell below it");
+        if (mesh.cell_nodes[i] != expected)
+            refuse(cell_text(mesh, static_cast<int32_t>(i / 2)) + " does not stand on the cell below it");
     }
 }
 
 }  // namespace
 
-void check_mesh(const Mesh& mesh) {
+void check_mesh(const Mesh& mesh, const std::string& path) try {
     check_sizes(mesh);
     check_cell_entries(mesh);
     check_nodes(mesh);
     check_shapes(mesh);
     check_duplicates(mesh);
-    if (mesh.dimension == 1) check_column_topology(mesh);
-    else check_plane_topology(mesh);
+    if (mesh.dimension == 1)
+        check_column_topology(mesh);
+    else
+        check_plane_topology(mesh);
+} catch (const Error& error) {
+    throw Error(error.status, path + ": " + error.what());
 }
 
 }  // namespace talus

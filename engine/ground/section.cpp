@@ -16,7 +16,8 @@ constexpr int32_t most_rows = 100000;
 using Profile = std::vector<Place>;
 
 double elevation(const Profile& profile, double x) {
-    const auto right = std::upper_bound(profile.begin() + 1, profile.end() - 1, x, [](double at, const Place& p) { return at < p[0]; });
+    const auto right = std::upper_bound(profile.begin() + 1, profile.end() - 1, x,
+                                        [](double at, const Place& p) { return at < p[0]; });
     const Place& a = *(right - 1);
     const Place& b = *right;
     if (x <= a[0]) return a[1];
@@ -46,8 +47,9 @@ std::vector<double> grid_lines(const SectionGround& section, const std::vector<c
         if (vertex - from <= near) continue;
         const double columns = std::ceil((vertex - from) / section.column_width - 1e-9);
         if (!(columns < most_cells)) {
-            throw Error(Status::invalid_scene, "ground.section.columnWidth: " + number_text(section.column_width) + " m is too small for a section " +
-                                                   number_text(right - left) + " m wide");
+            throw Error(Status::invalid_scene, "ground.section.columnWidth: " + number_text(section.column_width) +
+                                                   " m is too small for a section " + number_text(right - left) +
+                                                   " m wide");
         }
         const auto count = std::max(1, static_cast<int32_t>(columns));
         for (int32_t i = 1; i < count; ++i) lines.push_back(from + (vertex - from) * i / count);
@@ -64,18 +66,21 @@ std::vector<double> interfaces_at(const std::vector<const Profile*>& profiles, d
         double y = elevation(*profiles[k], x);
         if (k > 0 && y > interface.back() - near) {
             const bool base = k + 1 == profiles.size();
-            const std::string entry = base ? "ground.section.base" : "ground.section.layers[" + std::to_string(k) + "].top";
+            const std::string entry =
+                base ? "ground.section.base" : "ground.section.layers[" + std::to_string(k) + "].top";
             const std::string above = k == 1 ? "the terrain" : "the top of layers[" + std::to_string(k - 1) + "]";
             if (y > interface.back() + near) {
-                throw Error(Status::invalid_scene, entry + ": at x = " + number_text(x) + " m it lies at " + number_text(y) + " m, above " + above +
-                                                       " (" + number_text(interface.back()) + " m); layers may touch but not cross");
+                throw Error(Status::invalid_scene,
+                            entry + ": at x = " + number_text(x) + " m it lies at " + number_text(y) + " m, above " +
+                                above + " (" + number_text(interface.back()) + " m); layers may touch but not cross");
             }
             y = interface.back();  // the layer above is pinched out here
         }
         interface.push_back(y);
     }
     if (!(interface.front() - interface.back() > near)) {
-        throw Error(Status::invalid_scene, "ground.section.base: at x = " + number_text(x) + " m it meets the terrain; the ground needs a thickness everywhere");
+        throw Error(Status::invalid_scene, "ground.section.base: at x = " + number_text(x) +
+                                               " m it meets the terrain; the ground needs a thickness everywhere");
     }
     return interface;
 }
@@ -103,9 +108,10 @@ int32_t rows_needed(const SectionGround& section, double top, double bottom, dou
     for (double depth = top; depth < bottom - near; ++rows) {
         depth += cell_height(section, section.growth, depth);
         if (rows < most_rows) continue;
-        throw Error(Status::invalid_scene, "ground.section.surfaceCellHeight: the column at x = " + number_text(x) + " m would have more than " +
-                                               std::to_string(most_rows) + " cells with cells of " +
-                                               number_text(section.surface_cell_height) + " m at the surface");
+        throw Error(Status::invalid_scene, "ground.section.surfaceCellHeight: the column at x = " + number_text(x) +
+                                               " m would have more than " + std::to_string(most_rows) +
+                                               " cells with cells of " + number_text(section.surface_cell_height) +
+                                               " m at the surface");
     }
     return rows;
 }
@@ -122,9 +128,11 @@ double fitting_growth(const SectionGround& section, double top, double bottom, i
 }
 
 /// Depths of the row boundaries of one layer on one grid line, its top not included.
-void add_row_depths(const SectionGround& section, double top, double bottom, int32_t rows, std::vector<double>& depths) {
+void add_row_depths(const SectionGround& section, double top, double bottom, int32_t rows,
+                    std::vector<double>& depths) {
     const double growth = fitting_growth(section, top, bottom, rows);
-    const double stretch = (bottom - top) / (depth_after(section, growth, top, rows) - top);  // below 1 where even cells are too many
+    const double stretch =
+        (bottom - top) / (depth_after(section, growth, top, rows) - top);  // below 1 where even cells are too many
     double depth = top;
     for (int32_t i = 1; i < rows; ++i) {
         depth += cell_height(section, growth, depth);
@@ -136,34 +144,40 @@ void add_row_depths(const SectionGround& section, double top, double bottom, int
 // --- mesh ------------------------------------------------------------------------------------------------------------
 
 /// Rows of each layer: as many as the place that needs most.
-std::vector<int32_t> layer_rows(const SectionGround& section, const std::vector<double>& lines, const std::vector<std::vector<double>>& interfaces) {
+std::vector<int32_t> layer_rows(const SectionGround& section, const std::vector<double>& lines,
+                                const std::vector<std::vector<double>>& interfaces) {
     std::vector<int32_t> rows(section.layers.size(), 1);
     double total = 0;
     for (size_t k = 0; k < rows.size(); ++k) {
         for (size_t i = 0; i < lines.size(); ++i) {
             const double surface = interfaces[i].front();
-            rows[k] = std::max(rows[k], rows_needed(section, surface - interfaces[i][k], surface - interfaces[i][k + 1], lines[i]));
+            rows[k] = std::max(
+                rows[k], rows_needed(section, surface - interfaces[i][k], surface - interfaces[i][k + 1], lines[i]));
         }
         total += rows[k];
     }
     if (total * static_cast<double>(lines.size()) > most_cells) {
-        throw Error(Status::invalid_scene, "ground.section: would have " + number_text(total * static_cast<double>(lines.size())) +
-                                               " cells, more than " + number_text(most_cells) + "; give columnWidth or the cell heights larger values");
+        throw Error(Status::invalid_scene, "ground.section: would have " +
+                                               number_text(total * static_cast<double>(lines.size())) +
+                                               " cells, more than " + number_text(most_cells) +
+                                               "; give columnWidth or the cell heights larger values");
     }
     return rows;
 }
 
 /// Adds the nodes of one grid line from the base up; returns the node of each row boundary from the surface down. Boundaries
 /// that coincide, where a layer is pinched out, share a node.
-std::vector<int32_t> add_line(const SectionGround& section, double x, const std::vector<double>& interface, const std::vector<int32_t>& rows,
-                              Mesh& mesh) {
+std::vector<int32_t> add_line(const SectionGround& section, double x, const std::vector<double>& interface,
+                              const std::vector<int32_t>& rows, Mesh& mesh) {
     const double surface = interface.front();
     std::vector<double> depths = {0};
     for (size_t k = 0; k < rows.size(); ++k) {
         const double top = surface - interface[k];
         const double bottom = surface - interface[k + 1];
-        if (bottom > top) add_row_depths(section, top, bottom, rows[k], depths);
-        else depths.insert(depths.end(), static_cast<size_t>(rows[k]), top);
+        if (bottom > top)
+            add_row_depths(section, top, bottom, rows[k], depths);
+        else
+            depths.insert(depths.end(), static_cast<size_t>(rows[k]), top);
     }
     std::vector<int32_t> nodes(depths.size());
     for (size_t row = depths.size(); row-- > 0;) {
@@ -178,7 +192,8 @@ std::vector<int32_t> add_line(const SectionGround& section, double x, const std:
 }
 
 /// A quad between two grid lines, a triangle where one side has no height, nothing where both have none.
-void add_cell(int32_t bottom_left, int32_t bottom_right, int32_t top_right, int32_t top_left, int32_t soil, Mesh& mesh) {
+void add_cell(int32_t bottom_left, int32_t bottom_right, int32_t top_right, int32_t top_left, int32_t soil,
+              Mesh& mesh) {
     if (bottom_left == top_left && bottom_right == top_right) return;
     std::vector<int32_t>& nodes = mesh.cell_nodes;
     nodes.insert(nodes.end(), {bottom_left, bottom_right});
@@ -197,7 +212,8 @@ Mesh build_section(const Scene& scene) {
     profiles.push_back(&section.base);
     std::vector<int32_t> soils;
     for (size_t k = 0; k < section.layers.size(); ++k) {
-        soils.push_back(find_soil(scene, section.layers[k].soil, "ground.section.layers[" + std::to_string(k) + "].soil"));
+        soils.push_back(
+            find_soil(scene, section.layers[k].soil, "ground.section.layers[" + std::to_string(k) + "].soil"));
     }
 
     const std::vector<double> lines = grid_lines(section, profiles);
@@ -214,11 +230,12 @@ Mesh build_section(const Scene& scene) {
         const std::vector<int32_t> right = add_line(section, lines[i], interfaces[i], rows, mesh);
         size_t row = right.size() - 1;
         for (size_t k = rows.size(); i > 0 && k-- > 0;) {
-            for (int32_t r = 0; r < rows[k]; ++r, --row) add_cell(left[row], right[row], right[row - 1], left[row - 1], soils[k], mesh);
+            for (int32_t r = 0; r < rows[k]; ++r, --row)
+                add_cell(left[row], right[row], right[row - 1], left[row - 1], soils[k], mesh);
         }
         left = right;
     }
-    check_mesh(mesh);
+    check_mesh(mesh, "ground.section");
     set_sides(mesh);
     return mesh;
 }

@@ -63,7 +63,10 @@ public:
         std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(start), loop.end());
         const std::array<size_t, 3> cut = {corner(loop, right_, -1), corner(loop, right_, 1), corner(loop, left_, 1)};
         for (size_t i = 0; i < loop.size(); ++i) {
-            loop[i].side = i < cut[0] ? side_base : i < cut[1] ? side_right : i < cut[2] || cut[2] == 0 ? side_surface : side_left;
+            loop[i].side = i < cut[0]                  ? side_base
+                           : i < cut[1]                ? side_right
+                           : i < cut[2] || cut[2] == 0 ? side_surface
+                                                       : side_left;
         }
     }
 
@@ -90,8 +93,9 @@ void set_plane_sides(Mesh& mesh) {
     const Boundary2D boundary(mesh);
     std::vector<Loop> loops = boundary_loops(mesh);
     // A checked mesh is one piece: one loop goes around it, counter-clockwise, and the others around its holes.
-    const auto outer = std::max_element(loops.begin(), loops.end(),
-                                        [&](const Loop& one, const Loop& other) { return boundary.area(one) < boundary.area(other); });
+    const auto outer = std::max_element(loops.begin(), loops.end(), [&](const Loop& one, const Loop& other) {
+        return boundary.area(one) < boundary.area(other);
+    });
     std::rotate(loops.begin(), outer, outer + 1);
     boundary.cut_at_corners(loops.front());
     if (loops.size() > 1) mesh.sides.push_back("hole");
