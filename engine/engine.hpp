@@ -30,7 +30,10 @@ struct WaterBalance {
     double residual = 0;     ///< what the balance misses
 };
 
-enum class Regime : int32_t { quasi_static = 0 };
+enum class Regime : int32_t {
+    quasi_static = 0,
+    equilibrium_lost = 1,  ///< failure was found: the skeleton stands as it was, the flow goes on
+};
 
 struct StepReport {
     double time = 0;  ///< s, after the step

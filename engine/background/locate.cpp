@@ -152,7 +152,7 @@ void Locator::fill_bins() {
     }
 }
 
-Location Locator::locate(double x, double y) const {
+CellPlace Locator::locate(double x, double y) const {
     const Vector at = {mesh_->dimension == 1 ? 0 : x, y};
     for (size_t k = 0; k < 2; ++k) {
         if (!(at[k] >= bounds_.low[k] - tolerance_ && at[k] <= bounds_.high[k] + tolerance_)) return {};

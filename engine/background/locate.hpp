@@ -9,7 +9,7 @@
 
 namespace talus {
 
-struct Location {
+struct CellPlace {
     int32_t cell = -1;  ///< -1: outside the ground
     std::array<double, 2>
         natural{};  ///< natural coordinates of the cell's shape (background/shape.hpp); in a column the first
@@ -22,7 +22,7 @@ public:
 
     /// The cell at x, y (m); in a column x is not looked at. On an edge it is the cell with the least number. A place within 1e-9 of
     /// the mesh's extent outside the boundary counts as on it, so natural coordinates may lie outside the shape by as little.
-    [[nodiscard]] Location locate(double x, double y) const;
+    [[nodiscard]] CellPlace locate(double x, double y) const;
 
 private:
     struct Box {

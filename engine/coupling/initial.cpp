@@ -1,6 +1,7 @@
 // The ground and its state before anything happens.
 #include "coupling/simulation.hpp"
 #include "error.hpp"
+#include "scene/problems.hpp"
 #include "ground/build.hpp"
 #include "materials/hydraulic/curves.hpp"
 #include "motion/geostatic.hpp"
@@ -28,8 +29,8 @@ double suction_of(const HydraulicTable& table, const Soil& soil, size_t number, 
     const Retention& retention = soil.hydraulics.retention;
     if (saturation >= retention.maximum_saturation) return 0.0;
     if (saturation <= retention.residual_saturation)
-        throw Error(Status::invalid_scene, "initial.saturation = " + std::to_string(saturation) + ": must be above the residual saturation " +
-                                               std::to_string(retention.residual_saturation) + " of soils[" + std::to_string(number) + "]");
+        throw Error(Status::invalid_scene, "initial.saturation = " + value_text(saturation) + ": must be above the residual saturation " +
+                                               value_text(retention.residual_saturation) + " of soils[" + std::to_string(number) + "]");
     return -table.pressure_of_saturation(saturation);
 }
 
@@ -220,7 +221,7 @@ void Simulation::set_initial_stress() {
                    : set_k0_stress(*equilibrium_, mesh_, state_.points, loads, scene_.gravity, scene_.initial.k0);
     if (outcome_.status == EquilibriumStatus::converged) return;
     const auto [x, y] = outcome_.collapse.place;
-    const std::string where = " at (" + std::to_string(x) + ", " + std::to_string(y) + ") m";
+    const std::string where = " at (" + value_text(x) + ", " + value_text(y) + ") m";
     if (outcome_.status == EquilibriumStatus::no_equilibrium)
         throw Error(Status::invalid_scene, "initial.stress: the ground does not stand under its own weight: it fails" + where);
     throw Error(Status::not_converged, "initial.stress: no equilibrium was found under the ground's own weight; this says nothing about the slope");

@@ -1,6 +1,7 @@
 #include "coupling/simulation.hpp"
 
 #include "error.hpp"
+#include "scene/problems.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,7 @@ constexpr double first_exchange = 1e-4;    // of the host's first step: the star
 constexpr double shortest_exchange = 1e-9; // of the host's step
 constexpr double failure_window = 1e-3;    // of the host's step: how closely the time of failure is found
 
-std::string at_time(double time) { return "t = " + std::to_string(time) + " s: "; }
+std::string at_time(double time) { return "t = " + value_text(time) + " s: "; }
 
 }  // namespace
 
@@ -39,7 +40,7 @@ bool Simulation::advance(double until, const std::function<bool(double)>& cancel
                 break;
             case Exchange::flow_stopped:
                 throw Error(Status::not_converged, at_time(state_.time) + "the flow's equations were not solved within " +
-                                                       std::to_string(duration) + " s; this says nothing about the slope");
+                                                       value_text(duration) + " s; this says nothing about the slope");
         }
         if (state_.exchange_step < shortest_exchange * whole)
             throw Error(Status::not_converged, at_time(state_.time) + "the skeleton's equilibrium was neither found nor shown to be lost; " +
@@ -53,6 +54,11 @@ bool Simulation::advance(double until, const std::function<bool(double)>& cancel
 void Simulation::lose_equilibrium() {
     state_.equilibrium_lost = true;
     happenings.push_back({HappeningKind::loss_of_equilibrium, state_.time, outcome_.collapse.place, outcome_.collapse.displacement});
+}
+
+void Simulation::note_rain_end() {
+    if (!state_.rain_is_out) happenings.push_back({HappeningKind::rain_ended, forcing.rain_end(), {}, 0.0});
+    state_.rain_is_out = true;
 }
 
 void Simulation::restore(const GroundState& state) {

@@ -50,6 +50,9 @@ public:
     [[nodiscard]] GroundState save() const { return state_; }
     void restore(const GroundState& state);
 
+    /// To be told, once, that the rain series ended within the last advance.
+    void note_rain_end();
+
     Forcing forcing;
     std::vector<Happening> happenings;  ///< of the last advance; the caller clears it
     StepCounts counts;                  ///< likewise

@@ -1,0 +1,246 @@
+// The fields that hosts see: what the physics of the scene has, nothing else.
+#include "engine_state.hpp"
+#include "error.hpp"
+#include "points/quadrature.hpp"
+#include "scene/problems.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+enum class Needs { nothing, water, skeleton };
+
+/// Where a field's values come from.
+enum class Source { held, derived, connectivity };
+
+struct FieldEntry {
+    const char* name;
+    const char* units;
+    const char* standard_name;
+    Location location;
+    int32_t components;  ///< 0: the dimension
+    Needs needs;
+    Source source;
+};
+
+constexpr std::array fields{
+    FieldEntry{"cell_start", "1", "", Location::mesh, 1, Needs::nothing, Source::connectivity},
+    FieldEntry{"cell_nodes", "1", "", Location::mesh, 1, Needs::nothing, Source::connectivity},
+    FieldEntry{"cell_soil", "1", "", Location::cell, 1, Needs::nothing, Source::connectivity},
+    FieldEntry{"node_position", "m", "", Location::node, 0, Needs::nothing, Source::held},
+    FieldEntry{"pressure", "Pa", "soil_water__pressure", Location::node, 1, Needs::water, Source::held},
+    FieldEntry{"displacement", "m", "soil__displacement", Location::node, 0, Needs::skeleton, Source::held},
+    FieldEntry{"velocity", "m s-1", "soil__velocity", Location::node, 0, Needs::skeleton, Source::held},
+    FieldEntry{"point_position", "m", "", Location::point, 0, Needs::nothing, Source::held},
+    FieldEntry{"point_volume", "m2", "", Location::point, 1, Needs::nothing, Source::held},
+    FieldEntry{"point_pressure", "Pa", "soil_water__pressure", Location::point, 1, Needs::water, Source::held},
+    FieldEntry{"saturation", "1", "soil_water__saturated_volume_fraction", Location::point, 1, Needs::water, Source::held},
+    FieldEntry{"suction", "Pa", "soil_water__suction", Location::point, 1, Needs::water, Source::derived},
+    FieldEntry{"porosity", "1", "soil__porosity", Location::point, 1, Needs::water, Source::held},
+    FieldEntry{"water_content", "1", "soil_water__volume_fraction", Location::point, 1, Needs::water, Source::derived},
+    FieldEntry{"darcy_flux", "m s-1", "soil_water__darcy_velocity", Location::point, 0, Needs::water, Source::held},
+    FieldEntry{"net_stress", "Pa", "soil__net_stress", Location::point, 4, Needs::skeleton, Source::derived},
+    FieldEntry{"total_stress", "Pa", "soil__total_stress", Location::point, 4, Needs::skeleton, Source::derived},
+    FieldEntry{"strain", "1", "soil__strain", Location::point, 4, Needs::skeleton, Source::held},
+    FieldEntry{"plastic_strain", "1", "soil__plastic_strain", Location::point, 1, Needs::skeleton, Source::held},
+    FieldEntry{"mobilised_strength", "1", "soil__mobilized_strength", Location::point, 1, Needs::skeleton, Source::held},
+};
+
+bool has(const FieldEntry& entry, const Scene& scene) {
+    if (entry.needs == Needs::water) return scene.physics.water;
+    return entry.needs != Needs::skeleton || scene.physics.deforming;
+}
+
+const FieldEntry& find_entry(std::string_view name, const Scene& scene) {
+    const auto found = std::find_if(fields.begin(), fields.end(), [&](const FieldEntry& entry) { return entry.name == name; });
+    if (found == fields.end()) throw Error(Status::unknown_field, "no field is named '" + std::string(name) + "'");
+    if (!has(*found, scene))
+        throw Error(Status::unknown_field, "field '" + std::string(name) + "' is left out: the scene has no " +
+                                               (found->needs == Needs::water ? "water" : "deforming skeleton"));
+    return *found;
+}
+
+const std::vector<double>& held_values(std::string_view name, const GroundState& ground) {
+    if (name == "node_position") return ground.node_position;
+    if (name == "pressure") return ground.flow.pressure;
+    if (name == "displacement") return ground.displacement;
+    if (name == "velocity") return ground.velocity;
+    if (name == "point_position") return ground.points.position;
+    if (name == "point_volume") return ground.points.volume;
+    if (name == "point_pressure") return ground.points.pressure;
+    if (name == "saturation") return ground.points.saturation;
+    if (name == "porosity") return ground.points.porosity;
+    if (name == "darcy_flux") return ground.points.darcy_flux;
+    if (name == "strain") return ground.points.strain;
+    if (name == "plastic_strain") return ground.points.plastic_strain;
+    return ground.points.mobilised_strength;
+}
+
+// Stresses differ by their spherical part only: total = skeleton stress - pore stress, net = total + max(p_g, p_l) (physics.md).
+std::vector<double> stress_with(const Points& points, const std::vector<double>& added) {
+    std::vector<double> stress = points.skeleton_stress;
+    for (size_t p = 0; p < added.size(); ++p)
+        for (size_t k = 0; k < 3; ++k) stress[4 * p + k] += added[p];
+    return stress;
+}
+
+std::vector<double> derive(std::string_view name, const Simulation& simulation, const Scene& scene) {
+    const Points& points = simulation.state().points;
+    std::vector<double> values(points.pressure.size());
+    if (name == "suction") {
+        std::transform(points.pressure.begin(), points.pressure.end(), values.begin(), [](double p) { return std::max(0.0, -p); });
+        return values;
+    }
+    if (name == "water_content") {
+        std::transform(points.saturation.begin(), points.saturation.end(), points.porosity.begin(), values.begin(), std::multiplies<>());
+        return values;
+    }
+    std::vector<double> added(simulation.pore_stress().size());
+    for (size_t p = 0; p < added.size(); ++p) {
+        const bool is_net = name == "net_stress";
+        if (is_net && scene.physics.stress == StressMeasure::net) continue;
+        added[p] = -simulation.pore_stress()[p] + (is_net && scene.physics.water ? std::max(0.0, points.pressure[p]) : 0.0);
+    }
+    return stress_with(points, added);
+}
+
+/// Values at a place in a cell, from its points: linear over them, kept within their range.
+template <class Shape>
+void sample_points(const double* rows, int64_t components, const typename Shape::Natural& at, std::span<double> values) {
+    // The points are the corners of a smaller copy of the cell about its centre, in the same order.
+    typename Shape::Natural place = at;
+    if constexpr (Shape::nodes == 3) {
+        place = {2.0 * at[0] - 1.0 / 3.0, 2.0 * at[1] - 1.0 / 3.0};
+    } else {
+        for (double& coordinate : place) coordinate /= Shape::gauss;
+    }
+    const auto share = Shape::values(place);
+    for (size_t k = 0; k < static_cast<size_t>(components); ++k) {
+        double low = rows[k];
+        double high = rows[k];
+        double value = 0;
+        for (size_t i = 0; i < Shape::points; ++i) {
+            const double here = rows[i * static_cast<size_t>(components) + k];
+            value += share[i] * here;
+            low = std::min(low, here);
+            high = std::max(high, here);
+        }
+        values[k] = std::clamp(value, low, high);
+    }
+}
+
+constexpr std::array plane_axes{"x", "y"};
+constexpr std::array tensor_axes{"xx", "yy", "zz", "xy"};
+
+std::string component_name(const FieldEntry& entry, int64_t components, size_t k) {
+    if (components == 1 && entry.components == 1) return entry.name;
+    if (entry.components == 4) return std::string(entry.name) + "." + tensor_axes[k];
+    return std::string(entry.name) + "." + plane_axes[components == 1 ? 1 : k];
+}
+
+}  // namespace
+
+std::vector<std::string> Engine::State::field_names() const {
+    std::vector<std::string> names;
+    for (const FieldEntry& entry : fields)
+        if (has(entry, *scene)) names.emplace_back(entry.name);
+    return names;
+}
+
+FieldView Engine::State::view(std::string_view field) const {
+    const FieldEntry& entry = find_entry(field, *scene);
+    const Mesh& mesh = simulation.mesh();
+    FieldView view;
+    view.name = entry.name;
+    view.units = entry.units;
+    view.standard_name = entry.standard_name;
+    view.location = entry.location;
+    view.components = entry.components == 0 ? mesh.dimension : entry.components;
+    if (entry.source == Source::connectivity) {
+        const std::vector<int32_t>& numbers = field == "cell_start" ? mesh.cell_start : field == "cell_nodes" ? mesh.cell_nodes : mesh.cell_soil;
+        view.type = DataType::int32;
+        view.data = numbers.data();
+        view.count = static_cast<int64_t>(numbers.size());
+        return view;
+    }
+    const std::vector<double>* values = nullptr;
+    if (entry.source == Source::held) {
+        values = &held_values(field, simulation.state());
+    } else {
+        auto found = derived.find(field);
+        if (found == derived.end()) found = derived.emplace(field, derive(field, simulation, *scene)).first;
+        values = &found->second;
+    }
+    view.data = values->data();
+    view.count = static_cast<int64_t>(values->size()) / view.components;
+    return view;
+}
+
+void Engine::State::sample(const FieldView& field, const CellPlace& place, std::span<double> values) const {
+    const Mesh& mesh = simulation.mesh();
+    const auto cell = static_cast<size_t>(place.cell);
+    const auto* rows = static_cast<const double*>(field.data);
+    const int32_t first = mesh.cell_start[cell];
+    with_shape(mesh.cell_start[cell + 1] - first, [&](auto shape) {
+        using Shape = decltype(shape);
+        typename Shape::Natural at{};
+        std::copy_n(place.natural.begin(), Shape::dimension, at.begin());
+        const auto components = static_cast<size_t>(field.components);
+        const auto share = Shape::values(at);
+        const auto from_nodes = [&](const double* node_rows, size_t width, size_t k) {
+            double value = 0;
+            for (size_t a = 0; a < Shape::nodes; ++a)
+                value += share[a] * node_rows[static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(first) + a]) * width + k];
+            return value;
+        };
+        if (field.location == Location::node) {
+            for (size_t k = 0; k < components; ++k) values[k] = from_nodes(rows, components, k);
+            return;
+        }
+        const std::string_view name = field.name;
+        if (name == "saturation" || name == "suction" || name == "point_pressure") {  // through the pressure, which is linear in the cell
+            const double pressure = from_nodes(simulation.state().flow.pressure.data(), 1, 0);
+            const auto soil = static_cast<size_t>(mesh.cell_soil[cell]);
+            values[0] = name == "saturation" ? simulation.flow()->table(soil).at(pressure).saturation
+                                             : (name == "suction" ? std::max(0.0, -pressure) : pressure);
+            return;
+        }
+        const auto row = static_cast<size_t>(simulation.state().points.cell_start[cell]);
+        sample_points<Shape>(rows + row * components, field.components, at, values);
+    });
+}
+
+std::vector<std::string> Engine::State::probe_quantities() const {
+    std::vector<std::string> names;
+    for (const FieldEntry& entry : fields) {
+        const bool is_place = std::string_view(entry.name).find("position") != std::string_view::npos;
+        if (!has(entry, *scene) || entry.source == Source::connectivity || is_place) continue;
+        if (std::string_view(entry.name).starts_with("point_")) continue;
+        const int64_t components = entry.components == 0 ? simulation.mesh().dimension : entry.components;
+        for (size_t k = 0; k < static_cast<size_t>(components); ++k) names.push_back(component_name(entry, components, k));
+    }
+    return names;
+}
+
+void Engine::State::record(ProbeTrack& probe) const {
+    size_t quantity = 0;
+    std::array<double, 4> values{};
+    while (quantity < quantities.size()) {
+        const std::string_view name = std::string_view(quantities[quantity]).substr(0, quantities[quantity].find('.'));
+        const FieldView field = view(name);
+        const auto components = static_cast<size_t>(field.components);
+        sample(field, probe.cell_place, std::span(values).first(components));
+        for (size_t k = 0; k < components; ++k) probe.history[quantity + k].push_back(values[k]);
+        quantity += components;
+    }
+}
+
+void Engine::State::record_probes() {
+    probe_times.push_back(simulation.state().time);
+    for (ProbeTrack& probe : probes) record(probe);
+}
+
+}  // namespace talus

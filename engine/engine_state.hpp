@@ -1,0 +1,63 @@
+// What stands behind the facade. Private to engine/engine*.cpp.
+#pragma once
+
+#include "background/locate.hpp"
+#include "coupling/simulation.hpp"
+#include "engine.hpp"
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// A probe stays with the ground: it is a place in a cell, not in space.
+struct ProbeTrack {
+    std::string name;
+    Place place;  ///< at the start, m
+    CellPlace cell_place;
+    std::vector<std::vector<double>> history;  ///< one a quantity, one value a row of Engine::State::probe_times
+};
+
+struct Engine::State {
+    State(std::shared_ptr<const Scene> scene_in, Options options_in);
+
+    std::shared_ptr<const Scene> scene;
+    Options options;
+    Simulation simulation;
+    Locator locator;  ///< of the ground as it lay at the start
+    std::atomic<double> time{0.0};
+    std::atomic<bool> cancel_asked{false};
+    int64_t epoch = 1;
+    StepReport report;
+    std::vector<Event> events;
+    std::vector<double> probe_times;
+    std::vector<std::string> quantities;  ///< what probes record: scalars, or field.component
+    std::vector<ProbeTrack> probes;
+    std::string description;
+
+    /// Fields that are made from others, when they are asked for; of the present epoch.
+    mutable std::map<std::string, std::vector<double>, std::less<>> derived;
+
+    // engine_fields.cpp
+    [[nodiscard]] std::vector<std::string> field_names() const;
+    [[nodiscard]] FieldView view(std::string_view field) const;
+    /// The field's values at a place in a cell, one a component.
+    void sample(const FieldView& field, const CellPlace& place, std::span<double> values) const;
+    [[nodiscard]] std::vector<std::string> probe_quantities() const;
+    void record_probes();
+    void record(ProbeTrack& probe) const;
+
+    // engine_describe.cpp
+    [[nodiscard]] std::string describe() const;
+
+    void report_water(WaterBalance& water) const;
+    void tell_happenings();
+};
+
+/// Bytes held in the arrays of a field list; used by describe().
+int64_t bytes_held(const Simulation& simulation);
+
+}  // namespace talus
