@@ -3,6 +3,7 @@
 #pragma once
 
 #include "ground/mesh.hpp"
+#include "motion/anderson.hpp"
 #include "motion/cell_kinematics.hpp"
 #include "motion/collapse.hpp"
 #include "motion/loads.hpp"
@@ -10,7 +11,6 @@
 #include "motion/stiffness.hpp"
 #include "points/points.hpp"
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -32,7 +32,7 @@ struct EquilibriumOutcome {
     int32_t yielding = 0;            ///< points on the yield surface
     double residual = 0;             ///< norm of the unbalanced force over the norm of the loads, -
     double largest_increment = 0;    ///< m
-    CollapseEvidence collapse;       ///< of no_equilibrium, and the last seen of not_converged
+    CollapseEvidence collapse;       ///< of no_equilibrium; of not_converged what was seen last
 };
 
 class Equilibrium {
@@ -61,6 +61,9 @@ public:
     /// Back to the last accepted state, bit for bit.
     void reject();
 
+    /// The caller has put mesh and points back to an earlier accepted state; this was the nodes' displacement then.
+    void restore(std::span<const double> displacement);
+
     /// Nodes x dimension. `increment` is that of the last solve; `reaction` (N per m) is zero where not prescribed.
     [[nodiscard]] std::span<const double> displacement() const { return displacement_; }
     [[nodiscard]] std::span<const double> increment() const { return increment_; }
@@ -77,20 +80,27 @@ private:
         std::unique_ptr<KluSolver> solver;
     };
 
-    void set_external_force(const Loads& loads);
+    // equilibrium.cpp
     void start(const Loads& loads);
+    void set_external_force(const Loads& loads);
+    void finish(EquilibriumOutcome& outcome);
+
+    // iterations.cpp
     double unbalance();
-    double unbalance_elastic();
-    double residual_norm();
-    void predict(EquilibriumOutcome& outcome);
+    double unbalance_elastically();
+    void set_residual();
+    double relative_residual();
+    bool predict(double wanted, EquilibriumOutcome& outcome);
+    bool accelerate(EquilibriumOutcome& outcome);
     bool newton(EquilibriumOutcome& outcome);
-    bool line_search(double& norm);
+    bool line_search(double& unbalanced);
+    bool creep(EquilibriumOutcome& outcome);
+    double elastic_displacement(EquilibriumOutcome& outcome);
+    bool watch(CollapseWatch& watch, std::span<const double> last_direction) const;
     bool factorise_elastic(EquilibriumOutcome& outcome);
     bool factorise_tangent(double viscosity, EquilibriumOutcome& outcome);
     void solve_for_direction(Factor& factor, EquilibriumOutcome& outcome);
     void step_along(double length);
-    void finish(EquilibriumOutcome& outcome);
-    void keep_positions();
 
     Mesh& mesh_;
     Points& points_;
@@ -104,8 +114,9 @@ private:
     bool elastic_is_fresh_ = false;  // of the present geometry
 
     std::vector<double> displacement_, increment_, reaction_;      // nodes x dimension
-    std::vector<double> external_, internal_, search_start_;       // nodes x dimension
-    std::vector<double> residual_, direction_;                     // equations
+    std::vector<double> external_, internal_, best_;               // nodes x dimension
+    std::vector<double> residual_, direction_, last_direction_;    // equations
+    Anderson acceleration_;
     int32_t yielding_ = 0;
 };
 
