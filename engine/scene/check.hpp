@@ -20,6 +20,7 @@ public:
         return {*problems_, path_.empty() ? name : path_ + "." + name};
     }
     [[nodiscard]] Check at(const std::string& name, size_t index) const { return at(item_path(name, index)); }
+    [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] Check item(size_t index) const { return {*problems_, item_path(path_, index)}; }
 
     /// A text that begins with the entry's value, "= ...", follows the path directly.
@@ -91,7 +92,7 @@ void check_names(const Check& parent, const std::string& list, const std::vector
             continue;
         }
         const auto [first, is_new] = seen.emplace(items[i].name, i);
-        check.require(is_new, "'" + items[i].name + "' is also the name of " + item_path(list, first->second));
+        check.require(is_new, "'" + items[i].name + "' is also the name of " + parent.at(list, first->second).path());
     }
 }
 

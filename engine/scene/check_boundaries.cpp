@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace talus {
 namespace {
@@ -73,19 +74,8 @@ void check_motion(const Check& check, const Boundary& boundary, const Scene& sce
 
 Box box_of(const Boundary& boundary) { return {boundary.x_from, boundary.x_to, boundary.y_from, boundary.y_to}; }
 
-/// Whether any part of the side lies in the box, as far as that is known before there is a mesh.
-bool reaches(const Ground& ground, const std::string& side, const Box& box) {
-    if (box.x_from > box.x_to || box.y_from > box.y_to) return false;
-    const std::vector<Place> line = side_line(ground, side);
-    if (!line.empty()) return passes(line, box);
-    const std::optional<Box> all = bounds(ground);
-    if (!all) return true;
-    const Box part = intersection(*all, box);
-    return part.x_from <= part.x_to && part.y_from <= part.y_to;
-}
-
-void check_place(const Check& check, const Boundary& boundary, const Ground& ground) {
-    const std::vector<std::string> sides = side_names(ground);
+void check_place(const Check& check, const Boundary& boundary, const Outline& outline) {
+    const std::vector<std::string> sides = outline.side_names();
     if (boundary.side.empty())
         return check.at("side").say("is missing" + (sides.empty() ? "" : "; must be one of " + joined(sides)));
     if (!sides.empty() && std::find(sides.begin(), sides.end(), boundary.side) == sides.end()) {
@@ -95,33 +85,38 @@ void check_place(const Check& check, const Boundary& boundary, const Ground& gro
     const auto check_order = [&](const char* first, const char* second, double from, double to) {
         check.at(second).require(
             !(from > to), "= " + value_text(to) + " m: must not be below " + first + ", " + value_text(from) + " m");
-        return !(from > to);
+        return from <= to;  // false where one is not a number
     };
     const bool ordered_x = check_order("xFrom", "xTo", boundary.x_from, boundary.x_to);
     const bool ordered_y = check_order("yFrom", "yTo", boundary.y_from, boundary.y_to);
-    if (ordered_x && ordered_y && !reaches(ground, boundary.side, box_of(boundary))) {
+    if (ordered_x && ordered_y && !outline.reaches(boundary.side, box_of(boundary))) {
         check.say("has no effect: no part of the side '" + boundary.side +
                   "' lies between its xFrom, xTo, yFrom and yTo");
     }
 }
 
-/// Two boundaries may not say something on the same part of a side. A mesh's sides are not known yet: its own checks follow.
-void check_overlaps(const Check& scene_check, const Scene& scene) {
+/// What both boundaries say something on, where their boxes overlap; nothing otherwise.
+std::string said_by_both(const Boundary& a, const Boundary& b, const Outline& outline, bool sides_known) {
+    const bool flow = a.has_flow && b.has_flow;
+    const bool motion = a.has_motion && b.has_motion;
+    const Box both = intersection(box_of(a), box_of(b));
+    if (a.side != b.side || !(flow || motion) || is_empty(both)) return "";
+    if (!sides_known && !(both.x_from < both.x_to && both.y_from < both.y_to)) return "";
+    return outline.reaches(a.side, both) ? (flow ? "flow" : "motion") : "";
+}
+
+/// Two boundaries may not say something on the same part of a side.
+void check_overlaps(const Check& scene_check, const Scene& scene, const Outline& outline) {
     const std::vector<Boundary>& all = scene.boundaries;
+    const bool sides_known = scene.ground.kind != GroundKind::mesh;
     for (size_t i = 1; i < all.size(); ++i) {
         for (size_t k = 0; k < i; ++k) {
-            const bool flow = all[i].has_flow && all[k].has_flow;
-            const bool motion = all[i].has_motion && all[k].has_motion;
-            if (all[i].side != all[k].side || !(flow || motion)) continue;
-            const std::vector<Place> line = side_line(scene.ground, all[i].side);
-            const bool unbounded = scene.ground.kind == GroundKind::mesh;
-            const Box both = intersection(box_of(all[i]), box_of(all[k]));
-            const bool overlap = unbounded ? both.x_from < both.x_to && both.y_from < both.y_to
-                                           : !line.empty() && reaches(scene.ground, all[i].side, both);
+            const std::string what = said_by_both(all[i], all[k], outline, sides_known);
+            if (what.empty()) continue;
             scene_check.at("boundaries", i)
-                .require(!overlap, std::string("says something on the ") + (flow ? "flow" : "motion") +
-                                       " of a part of the side '" + all[i].side + "' where " +
-                                       item_path("boundaries", k) + " does");
+                .say("says something on the " + what + " of a part of the side '" + all[i].side + "' where " +
+                     item_path("boundaries", k) + " does");
+            break;
         }
     }
 }
@@ -159,7 +154,7 @@ bool is_covered(const RainZone& zone, const Scene& scene) {
     return std::any_of(scene.boundaries.begin(), scene.boundaries.end(), covers);
 }
 
-void check_zone(const Check& check, const RainZone& zone, const Scene& scene) {
+void check_zone(const Check& check, const RainZone& zone, const Scene& scene, const Outline& outline) {
     check_length(check.at("rate"), zone.rate.size(), zone.time.size(), "time");
     check_increasing(check.at("time"), zone.time);
     if (given(zone.rain_end)) {
@@ -174,20 +169,23 @@ void check_zone(const Check& check, const RainZone& zone, const Scene& scene) {
         return check.at("xTo").say("= " + value_text(zone.x_to) + " m: must be above xFrom, " +
                                    value_text(zone.x_from) + " m");
     }
-    check.require(reaches(scene.ground, "surface", {.x_from = zone.x_from, .x_to = zone.x_to}),
+    check.require(outline.reaches("surface", {.x_from = zone.x_from, .x_to = zone.x_to}),
                   "has no effect: it is outside the ground");
     check.require(!is_covered(zone, scene), "has no effect: a boundary holds the flow on all of its surface");
 }
 
 void check_zone_overlaps(const Check& check, const std::vector<RainZone>& zones) {
-    for (size_t i = 1; i < zones.size(); ++i) {
-        for (size_t k = 0; k < i; ++k) {
-            const double from = std::max(zones[i].x_from, zones[k].x_from);
-            const double to = std::min(zones[i].x_to, zones[k].x_to);
-            check.at("zones", i)
-                .require(!(from < to), "overlaps " + item_path("surface.zones", k) + " from x = " + value_text(from) +
-                                           " to " + value_text(to) + " m");
-        }
+    std::vector<size_t> order(zones.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return zones[a].x_from < zones[b].x_from; });
+    for (size_t i = 1; i < order.size(); ++i) {  // neighbours: where any two overlap, two neighbours do
+        const auto [first, second] = std::minmax(order[i - 1], order[i]);
+        const double from = std::max(zones[first].x_from, zones[second].x_from);
+        const double to = std::min(zones[first].x_to, zones[second].x_to);
+        if (!(from < to)) continue;
+        check.at("zones", second)
+            .say("overlaps " + check.at("zones", first).path() + " from x = " + value_text(from) + " to " +
+                 value_text(to) + " m");
     }
 }
 
@@ -195,15 +193,16 @@ void check_zone_overlaps(const Check& check, const std::vector<RainZone>& zones)
 
 void check_boundaries(const Check& scene_check, const Scene& scene) {
     check_names(scene_check, "boundaries", scene.boundaries, false);
+    const Outline outline(scene.ground);
     for (size_t i = 0; i < scene.boundaries.size(); ++i) {
         const Check check = scene_check.at("boundaries", i);
         const Boundary& boundary = scene.boundaries[i];
         check.require(boundary.has_flow || boundary.has_motion, "has no effect: says nothing on flow or motion");
-        check_place(check, boundary, scene.ground);
+        check_place(check, boundary, outline);
         check_flow(check, boundary, scene.physics);
         check_motion(check, boundary, scene);
     }
-    check_overlaps(scene_check, scene);
+    check_overlaps(scene_check, scene, outline);
     if (scene.physics.deforming) check_held(scene_check.at("boundaries"), scene);
 }
 
@@ -215,8 +214,10 @@ void check_surface(const Check& scene_check, const Scene& scene) {
         return;
     }
     check_names(check, "zones", scene.surface.zones, false);
-    for (size_t i = 0; i < scene.surface.zones.size(); ++i)
-        check_zone(check.at("zones", i), scene.surface.zones[i], scene);
+    const Outline outline(scene.ground);
+    for (size_t i = 0; i < scene.surface.zones.size(); ++i) {
+        check_zone(check.at("zones", i), scene.surface.zones[i], scene, outline);
+    }
     check_zone_overlaps(check, scene.surface.zones);
 }
 

@@ -12,9 +12,9 @@ constexpr double most_cells = 5e6;
 
 void check_soil_name(const Check& check, const std::string& name, const std::vector<Soil>& soils) {
     if (name.empty()) return check.say("is missing; a layer needs the name of a soil");
+    if (std::any_of(soils.begin(), soils.end(), [&](const Soil& soil) { return soil.name == name; })) return;
     std::vector<std::string> names;
     for (const Soil& soil : soils) names.push_back(soil.name);
-    if (std::find(names.begin(), names.end(), name) != names.end()) return;
     const std::string near = nearest(name, names);
     check.say("'" + name + "' is no soil; the soils are " + joined(names) +
               (near.empty() ? "" : " (did you mean " + near + "?)"));
@@ -273,14 +273,15 @@ void check_ground(const Check& scene_check, const Scene& scene) {
 
 void check_probes(const Check& scene_check, const Scene& scene) {
     check_names(scene_check, "probes", scene.probes, true);
+    const Outline outline(scene.ground);
     const bool column = scene.ground.kind == GroundKind::column;
     for (size_t i = 0; i < scene.probes.size(); ++i) {
         const auto [x, y] = scene.probes[i].place;
         scene_check.at("probes", i)
             .at("place")
-            .require(inside(scene.ground, scene.probes[i].place), "(" + value_text(x) + ", " + value_text(y) +
-                                                                      ") m is outside the ground" +
-                                                                      (column ? "; x is 0 in a column" : ""));
+            .require(outline.inside(scene.probes[i].place), "(" + value_text(x) + ", " + value_text(y) +
+                                                                ") m is outside the ground" +
+                                                                (column ? "; x is 0 in a column" : ""));
     }
 }
 

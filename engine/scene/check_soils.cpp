@@ -98,7 +98,8 @@ void check_strength(const Check& check, const Strength& strength) {
     if (gains) {
         const bool cohesive = given_positive(strength.cohesion_gain);
         check.at("cohesionRate")
-            .used(cohesive, given_positive(strength.cohesion_rate), cohesive ? "a cohesionGain" : "no cohesionGain");
+            .used(cohesive, given_positive(strength.cohesion_rate),
+                  cohesive ? "a cohesionGain" : "a strength without cohesionGain");
         check.at("cohesionGain")
             .needed(cohesive || given_positive(strength.friction_gain), "exponential (or a frictionGain)");
     }

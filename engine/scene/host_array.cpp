@@ -70,13 +70,13 @@ private:
     }
 
     template <class Struct>
-        requires requires(EntrySetter& setter, Struct& structure) { fields(setter, structure); }
+    requires requires(EntrySetter& setter, Struct& structure) { fields(setter, structure); }
     void set(std::string_view rest, Struct& structure) {
         if (rest.starts_with('.')) descend(rest.substr(1), structure);
     }
 
     template <class Struct>
-        requires requires(EntrySetter& setter, Struct& structure) { fields(setter, structure); }
+    requires requires(EntrySetter& setter, Struct& structure) { fields(setter, structure); }
     void set(std::string_view rest, std::vector<Struct>& list) {
         size_t index = 0;
         const char* end = rest.data() + rest.size();
@@ -109,7 +109,8 @@ private:
 void set_entry(Scene& scene, const HostArray& array) {
     EntrySetter setter(array, array.entry);
     fields(setter, scene);
-    if (!setter.found()) throw Error(Status::invalid_argument, "array " + array.entry + ": the scene has no such array");
+    if (!setter.found())
+        throw Error(Status::invalid_argument, "array " + array.entry + ": the scene has no such array");
 }
 
 }  // namespace talus

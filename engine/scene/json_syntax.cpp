@@ -1,11 +1,41 @@
 #include "scene/json_syntax.hpp"
 
+#include <charconv>
 #include <cstddef>
 
 namespace talus {
 namespace {
 
 constexpr int deepest = 50;
+
+/// The number that four hexadecimal digits are, or -1.
+int hexadecimal(std::string_view text, size_t at) {
+    int number = 0;
+    if (at + 4 > text.size()) return -1;
+    const auto [end, error] = std::from_chars(&text[at], &text[at] + 4, number, 16);
+    return error == std::errc() && end == &text[at] + 4 && text[at] != '-' ? number : -1;
+}
+
+bool is_surrogate(int unit) { return (unit & 0xf800) == 0xd800; }
+bool is_high_surrogate(int unit) { return (unit & 0xfc00) == 0xd800; }
+bool is_low_surrogate(int unit) { return unit >= 0 && (unit & 0xfc00) == 0xdc00; }
+
+void append_utf8(std::string& text, int code) {
+    const auto append = [&](int byte) { text += static_cast<char>(byte); };
+    if (code < 0x80) {
+        if (code == '"' || code == '\\') append('\\');
+        append(code);
+    } else if (code < 0x800) {
+        append(0xc0 | code >> 6);
+    } else if (code < 0x10000) {
+        append(0xe0 | code >> 12);
+    } else {
+        append(0xf0 | code >> 18);
+        append(0x80 | (code >> 12 & 0x3f));
+    }
+    if (code >= 0x800) append(0x80 | (code >> 6 & 0x3f));
+    if (code >= 0x80) append(0x80 | (code & 0x3f));
+}
 
 /// A recursive descent over the grammar of RFC 8259. Each function moves past what it accepts, or notes what it expected.
 class Scan {
@@ -63,7 +93,7 @@ private:
                 ++at;
                 return true;
             }
-            if (static_cast<unsigned char>(letter) < 0x20) return fail("no line break or control character in a text");
+            if (static_cast<unsigned char>(letter) < 0x20) return fail("no control character in a text");
             if (letter == '\\' && !escape()) return false;
         }
         return fail("the closing '\"' of a text");
@@ -76,12 +106,15 @@ private:
             return std::string_view("\"\\/bfnrt").find(peek()) != std::string_view::npos ||
                    fail("an escape that JSON knows");
         }
-        for (int digit = 0; digit < 4; ++digit) {
-            ++at;
-            if (std::string_view("0123456789abcdefABCDEF").find(peek()) == std::string_view::npos) {
-                return fail("four hexadecimal digits");
-            }
-        }
+        const int unit = hexadecimal(text, at + 1);
+        if (unit < 0) return fail("four hexadecimal digits");
+        if (unit < 0x20) return fail("no control character in a text");
+        at += 4;
+        if (!is_surrogate(unit)) return true;
+        const bool pair =
+            is_high_surrogate(unit) && text.substr(at + 1, 2) == "\\u" && is_low_surrogate(hexadecimal(text, at + 3));
+        if (!pair) return fail("a pair of surrogates");
+        at += 6;
         return true;
     }
 
@@ -148,5 +181,24 @@ private:
 }  // namespace
 
 std::string json_syntax_error(std::string_view text) { return Scan(text).error(); }
+
+std::string without_unicode_escapes(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    for (size_t at = 0; at < text.size();) {
+        if (text[at] != '\\') {
+            result += text[at++];
+        } else if (text[at + 1] != 'u') {
+            result += text.substr(at, 2);
+            at += 2;
+        } else {
+            const int unit = hexadecimal(text, at + 2);
+            const bool pair = is_high_surrogate(unit);
+            append_utf8(result, pair ? 0x10000 + ((unit & 0x3ff) << 10) + (hexadecimal(text, at + 8) & 0x3ff) : unit);
+            at += pair ? 12 : 6;
+        }
+    }
+    return result;
+}
 
 }  // namespace talus

@@ -18,7 +18,7 @@ using Numbers = capnp::List<double>;
 using Integers = capnp::List<int32_t>;
 using Places = capnp::List<Numbers>;
 
-constexpr uint32_t longest_list = 100000;  // entries of a list of structs: a few bytes of a message may claim many
+constexpr uint32_t longest_list = 10000;  // entries of a list of structs: a few bytes of a message may claim many
 
 class Reader {
 public:

@@ -16,24 +16,29 @@ struct Box {
 };
 
 [[nodiscard]] Box intersection(const Box& a, const Box& b);
-[[nodiscard]] bool contains(const Box& box, Place place);
+[[nodiscard]] bool is_empty(const Box& box);
 
 /// Height of a profile with increasing x; constant beyond its ends.
 [[nodiscard]] double height_at(const std::vector<Place>& profile, double x);
 
-/// The names of the sides that a boundary may have, none where a mesh file may name more.
-[[nodiscard]] std::vector<std::string> side_names(const Ground& ground);
+/// The ground's sides and extent. Refers to the ground.
+class Outline {
+public:
+    explicit Outline(const Ground& ground);
 
-/// The line of a side: two places or more, one in a column. None for a mesh, whose sides are not known before it is built.
-[[nodiscard]] std::vector<Place> side_line(const Ground& ground, const std::string& side);
+    /// The names of the sides that a boundary may have, none where a mesh file may name more.
+    [[nodiscard]] std::vector<std::string> side_names() const;
 
-/// Whether a part of the line lies in the box: more than a point of it, where it is longer than that.
-[[nodiscard]] bool passes(const std::vector<Place>& line, const Box& box);
+    /// Whether any part of a side lies in the box: more than a point of it, where the side is longer than that. The sides of a
+    /// mesh are not known before it is built: there the mesh's bounds decide, and nothing is known of a file.
+    [[nodiscard]] bool reaches(const std::string& side, const Box& box) const;
 
-/// The rectangle around the ground; none for a mesh file.
-[[nodiscard]] std::optional<Box> bounds(const Ground& ground);
+    /// Whether a place lies in the ground, to 1e-9 of its size; in its bounds for a mesh, and always for a mesh file.
+    [[nodiscard]] bool inside(Place place) const;
 
-/// Whether a place lies in the ground, to 1e-9 of its size; in its bounds for a mesh, and always for a mesh file.
-[[nodiscard]] bool inside(const Ground& ground, Place place);
+private:
+    const Ground& ground;
+    std::optional<Box> bounds;  ///< none for a mesh file
+};
 
 }  // namespace talus

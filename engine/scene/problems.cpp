@@ -43,7 +43,7 @@ std::string nearest(const std::string& wrong, const std::vector<std::string>& na
     if (wrong.size() > 100) return "";
     const std::string sought = letters(wrong);
     std::string best;
-    size_t least = sought.size() / 3 + 1;
+    size_t least = std::min(sought.size(), sought.size() / 3 + 2);  // something must be the same
     for (const std::string& name : names) {
         const size_t apart = distance(sought, letters(name));
         if (apart >= least) continue;

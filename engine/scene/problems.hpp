@@ -9,11 +9,12 @@
 
 namespace talus {
 
-/// A number in a message: the shortest text that reads back as the same number, independent of the locale.
-template <typename Number>
-[[nodiscard]] std::string value_text(Number value) {
-    std::array<char, 40> buffer{};
-    return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+/// A number in a message, to twelve digits, independent of the locale.
+[[nodiscard]] inline std::string value_text(double value) {
+    std::array<char, 32> buffer{};
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0,  // no "-0"
+                                            std::chars_format::general, 12);
+    return {buffer.data(), end};
 }
 
 [[nodiscard]] inline std::string item_path(const std::string& list, size_t index) {

@@ -31,7 +31,7 @@ Scene read_json(std::string_view text) {
         const capnp::JsonCodec codec;
         capnp::MallocMessageBuilder parsed;
         const auto value = parsed.getRoot<capnp::JsonValue>();
-        codec.decodeRaw(as_array(text), value);
+        codec.decodeRaw(as_array(without_unicode_escapes(text)), value);
 
         Problems problems;
         check_json_fields(value.asReader(), capnp::Schema::from<schema::Scene>(), problems);

@@ -46,7 +46,7 @@ struct Scene {
   gravity @3 :Float64 = 9.81 $limits(unit = "m/s2", low = 1e-3, high = 2000, orZero = true);
   # Downwards. 0 in a dry ground only: a conductivity is defined by the weight of water.
   water @4 :Water;
-  # The pore water; left out: water at 10 degrees Celsius or so.
+  # The pore water.
   soils @5 :List(Soil);
   # At least one.
   ground @6 :Ground;
