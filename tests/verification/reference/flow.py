@@ -19,7 +19,7 @@ from scene import HOURS, RAIN, SURFACE_PRESSURE, WATER_LEVEL, Scene, midpoints
 WEIGHT = soil.WATER_DENSITY * soil.GRAVITY
 GAMMA = 1 - 1 / np.sqrt(2)
 FILM = 1e-6  # m/s per Pa
-SMALL = 1e-7  # of the rain on the whole surface: the norm where Newton stops
+SMALL = 1e-7  # of the rain on a typical node: the norm where Newton stops
 
 
 def saturation(p):
@@ -53,8 +53,10 @@ def quad_mesh(x, z, height_of):
 
 
 class Flow:
-    def __init__(self, scene, x, z, degree=2, lumped=False):
-        self.scene, self.x, self.z = scene, x, z
+    """Unknown p on quads of the given degree; lumped=True puts the mass at the nodes (degree 1 only)."""
+
+    def __init__(self, scene, x, z, degree=2, lumped=False, small=SMALL):
+        self.scene, self.x, self.z, self.small = scene, x, z, small
         self.domain = quad_mesh(x, z, scene.y)
         self.space = fem.FunctionSpace(self.domain, ("Lagrange", degree))
         make = lambda: fem.Function(self.space)
@@ -78,7 +80,7 @@ class Flow:
         dx = ufl.Measure("dx", domain=self.domain, metadata={"quadrature_degree": 2 * degree})
         dx_mass = dx
         if lumped:
-            dx_mass = ufl.Measure("dx", domain=self.domain, metadata={"quadrature_rule": "vertex", "quadrature_degree": 1})
+            dx_mass = ufl.Measure("dx", domain=self.domain, metadata={"quadrature_rule": "GLL", "quadrature_degree": 1})
         up = ufl.as_vector([0.0, 1.0])
         gained = mass(p) - mass(self.old) - self.first_weight * (mass(self.first) - mass(self.old))
         flux = soil.CONDUCTIVITY / WEIGHT * permeability(p) * (ufl.grad(p) + WEIGHT * up)
@@ -141,11 +143,11 @@ class Flow:
         return change.array.copy()
 
     def newton(self, scale, largest=15):
-        """Damped Newton on self.p; True when the residual's norm is below SMALL * scale."""
+        """Damped Newton on self.p; True when the residual's norm is below self.small * scale."""
         value = self.assemble_residual()
         norm = np.linalg.norm(value)
         for _ in range(largest):
-            if norm < SMALL * scale:
+            if norm < self.small * scale:
                 return True
             change = self.linear_solve(self.jacobian, value)
             start, damping = self.p.x.array.copy(), 1.0

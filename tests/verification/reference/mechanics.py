@@ -96,9 +96,19 @@ def shape(xi, eta):
     return n, np.stack([dx, dy])
 
 
+def bilinear(xi, eta):
+    """As `shape`, for the four-node quad."""
+    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    along, across = 1 + corners[:, 0] * xi, 1 + corners[:, 1] * eta
+    return 0.25 * along * across, 0.25 * np.stack([corners[:, 0] * across, corners[:, 1] * along])
+
+
 class Mechanics:
-    def __init__(self, scene, x, z):
-        self.scene, self.x, self.z = scene, x, z
+    """Eight-node quads on the lines x and z; with linear=True four-node quads with the mean dilatation (B-bar)."""
+
+    def __init__(self, scene, x, z, linear=False):
+        self.scene, self.x, self.z, self.linear = scene, x, z, linear
+        self.iterations = 0
         node_x, node_z = midpoints(x), midpoints(z)
         self.grid_x, self.grid_z = np.meshgrid(node_x, node_z, indexing="ij")
         number = np.arange(self.grid_x.size).reshape(self.grid_x.shape)
@@ -111,7 +121,9 @@ class Mechanics:
         self.nodes = nodes
         gauss = 1 / np.sqrt(3)
         places = [(-gauss, -gauss), (gauss, -gauss), (gauss, gauss), (-gauss, gauss)]
-        values, gradients = zip(*(shape(*place) for place in places))
+        if linear:
+            self.elements = self.elements[:, :4]
+        values, gradients = zip(*((bilinear if linear else shape)(*place) for place in places))
         corners = nodes[self.elements]
         jacobian = np.einsum("gdk,ekc->egdc", np.array(gradients), corners)
         self.volume = np.linalg.det(jacobian)
@@ -119,11 +131,15 @@ class Mechanics:
         physical = np.einsum("egcd,gdk->egck", np.linalg.inv(jacobian), np.array(gradients))
         self.values = np.array(values)
         self.points = np.einsum("gk,ekc->egc", self.values, corners).reshape(-1, 2)
-        count = self.elements.shape[0]
-        self.strain_matrix = np.zeros((count, 4, 3, 16))
+        count, freedoms = self.elements.shape[0], 2 * self.elements.shape[1]
+        self.strain_matrix = np.zeros((count, 4, 3, freedoms))
         self.strain_matrix[:, :, 0, 0::2], self.strain_matrix[:, :, 1, 1::2] = physical[:, :, 0], physical[:, :, 1]
         self.strain_matrix[:, :, 2, 0::2], self.strain_matrix[:, :, 2, 1::2] = physical[:, :, 1], physical[:, :, 0]
-        self.freedoms = (2 * self.elements[:, :, None] + np.arange(2)).reshape(count, 16)
+        if linear:
+            dilatation = self.strain_matrix[:, :, 0] + self.strain_matrix[:, :, 1]
+            mean = np.einsum("egk,eg->ek", dilatation, self.volume) / self.volume.sum(axis=1)[:, None]
+            self.strain_matrix[:, :, :2] += 0.5 * (mean[:, None] - dilatation)[:, :, None]
+        self.freedoms = (2 * self.elements[:, :, None] + np.arange(2)).reshape(count, freedoms)
         self.size = nodes.size
         used = np.zeros(self.size, bool)
         used[self.freedoms.ravel()] = True
@@ -133,7 +149,7 @@ class Mechanics:
         self.free = np.flatnonzero(used)
         place = np.full(self.size, -1)
         place[self.free] = np.arange(self.free.size)
-        rows, columns = np.repeat(place[self.freedoms], 16, 1).ravel(), np.tile(place[self.freedoms], (1, 16)).ravel()
+        rows, columns = np.repeat(place[self.freedoms], freedoms, 1).ravel(), np.tile(place[self.freedoms], (1, freedoms)).ravel()
         self.kept = (rows >= 0) & (columns >= 0)
         self.rows, self.columns = rows[self.kept], columns[self.kept]
         self.stress = np.zeros((4 * count, 4))
@@ -148,7 +164,7 @@ class Mechanics:
         total[:, :2] -= np.maximum(pressure, 0.0)[:, None]
         total = total.reshape(-1, 4, 3) * self.volume[:, :, None]
         density = DRY_DENSITY + soil.POROSITY * soil.saturation(pressure) * soil.WATER_DENSITY
-        weight = np.zeros((self.elements.shape[0], 16))
+        weight = np.zeros(self.freedoms.shape)
         weight[:, 1::2] = -soil.GRAVITY * (density.reshape(-1, 4) * self.volume) @ self.values
         return self.scatter(np.einsum("egik,egi->ek", self.strain_matrix, total)) - self.scatter(weight), self.scatter(weight)
 
@@ -208,7 +224,7 @@ class Mechanics:
                 self.stress, self.displacement, self.yields = stress, self.displacement + increment, yields
                 return True
             change = self.solve(tangent, -residual)
-            self.iterations = getattr(self, "iterations", 0) + 1
+            self.iterations += 1
             damping, best = 1.0, None
             while damping > 0.05:
                 found = state(increment + damping * change)
@@ -234,8 +250,10 @@ class Mechanics:
         return (values / np.maximum(counts, 1)).reshape(shape)[::2, ::2]
 
     def displacements(self):
-        """(2, i, j) on the tensor grid, the elements' centres from their shape functions."""
+        """(2, i, j) on the tensor grid of nodes, the elements' centres from their shape functions."""
         u = self.displacement.reshape(-1, 2).copy()
+        if self.linear:
+            return np.moveaxis(u.reshape(*self.grid_x.shape, 2)[::2, ::2], -1, 0)
         u[self.centres] = np.einsum("k,ekc->ec", shape(0.0, 0.0)[0], u[self.elements])
         return np.moveaxis(u.reshape(*self.grid_x.shape, 2), -1, 0)
 
