@@ -23,15 +23,24 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
         factor->matrix = stiffness_.matrix();
         factor->solver = std::make_unique<KluSolver>(factor->matrix);
     }
+    stiffness_.assemble_elastic(points_, skeleton_, elastic_.matrix);
+    undeformed_stiffness_ = elastic_.matrix.value;
+    elastic_.solver->factorise(elastic_.matrix);
+    tangent_.solver->factorise(elastic_.matrix);  // the pivots of every tangent, so that none depends on those before it
 }
 
 EquilibriumOutcome Equilibrium::solve(const Loads& loads) {
     constexpr double worth_predicting = 1e-2;
     EquilibriumOutcome outcome;
     start(loads);
+    const bool starts_afresh = is_at_start_;
+    is_at_start_ = false;
     unbalance();
-    if (relative_residual() > tolerance && predict(worth_predicting, outcome)) {
-        unbalance();
+    if (relative_residual() > tolerance) {
+        if (starts_afresh) {
+            predict(worth_predicting, outcome);
+            unbalance();
+        }
         if (!accelerate(outcome) && !newton(outcome)) creep(outcome);
     }
     finish(outcome);
@@ -50,8 +59,9 @@ void Equilibrium::start(const Loads& loads) {
     skeleton_.revert();
     skeleton_.set_strength(loads.strength);
     set_external_force(loads);
-    std::copy(loads.prescribed.begin(), loads.prescribed.end(), increment_.begin());
-    for (const int32_t freedom : equations_.freedom) increment_[static_cast<size_t>(freedom)] = 0;
+    for (size_t i = 0; i < increment_.size(); ++i) {
+        if (equations_.number[i] < 0) increment_[i] = loads.prescribed[i];
+    }
 }
 
 void Equilibrium::set_external_force(const Loads& loads) {
@@ -118,34 +128,70 @@ void Equilibrium::accept() {
     for (size_t i = 0; i < increment_.size(); ++i) {
         mesh_.position[i] += increment_[i];
         displacement_[i] += increment_[i];
-        increment_[i] = 0;
     }
+    forget_increment();
+    update_geometry();
+}
+
+/// The elastic stiffness serves as predictor and preconditioner. It is that of the undeformed ground until the ground is much
+/// deformed: a rule on the state alone, so that a restored run goes on with the same bits.
+void Equilibrium::update_geometry() {
+    constexpr double much = 0.05;
     kinematics_.update(mesh_, points_);
-    elastic_is_fresh_ = false;
+    const bool is_deformed = largest_displacement_gradient() > much;
+    if (!is_deformed && !was_deformed_) return;
+    if (is_deformed) {
+        stiffness_.assemble_elastic(points_, skeleton_, elastic_.matrix);
+    } else {
+        elastic_.matrix.value = undeformed_stiffness_;
+    }
+    elastic_.solver->factorise(elastic_.matrix);
+    was_deformed_ = is_deformed;
+}
+
+double Equilibrium::largest_displacement_gradient() const {
+    double largest = 0;
+    for_each_block(kinematics_.blocks(), [&](auto shape, const CellBlock& block) {
+        using Shape = decltype(shape);
+        for (const int32_t c : block.cells) {
+            const auto u = gather_increment<Shape>(kinematics_.stencil(c), displacement_.data());
+            for (size_t i = 0; i < Shape::points; ++i) {
+                const auto gradient = displacement_gradient<Shape>(kinematics_.gradient<Shape>(c, i), u);
+                largest = std::max(largest, gradient.cwiseAbs().maxCoeff());
+            }
+        }
+    });
+    return largest;
 }
 
 void Equilibrium::accept_stress() {
     std::fill(points_.strain.begin(), points_.strain.end(), 0.0);
     std::fill(points_.plastic_strain.begin(), points_.plastic_strain.end(), 0.0);
-    std::fill(increment_.begin(), increment_.end(), 0.0);
     skeleton_.keep();
+    forget_increment();
 }
 
 void Equilibrium::reject() {
     skeleton_.revert();
-    std::fill(increment_.begin(), increment_.end(), 0.0);
+    forget_increment();
 }
 
 void Equilibrium::restore(std::span<const double> displacement) {
     skeleton_.keep();
-    std::copy(displacement.begin(), displacement.end(), displacement_.begin());
+    forget_increment();
+    displacement_.assign(displacement.begin(), displacement.end());
+    update_geometry();
+}
+
+void Equilibrium::forget_increment() {
     std::fill(increment_.begin(), increment_.end(), 0.0);
-    kinematics_.update(mesh_, points_);
-    elastic_is_fresh_ = false;
+    is_at_start_ = true;
 }
 
 double Equilibrium::volumetric_increment(int32_t cell) const {
-    return mesh_.dimension == 1 ? 0 : mean_dilatation<Quad4>(kinematics_, cell, increment_.data());
+    if (mesh_.dimension == 2) return mean_dilatation<Quad4>(kinematics_, cell, increment_.data());
+    const auto u = gather_increment<Line2>(kinematics_.stencil(cell), increment_.data());
+    return displacement_gradient<Line2>(kinematics_.gradient<Line2>(cell, 0), u)(1, 1);
 }
 
 }  // namespace talus

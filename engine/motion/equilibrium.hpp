@@ -27,7 +27,7 @@ enum class EquilibriumStatus {
 struct EquilibriumOutcome {
     EquilibriumStatus status = EquilibriumStatus::not_converged;
     int32_t iterations = 0;          ///< linear solves
-    int32_t factorisations = 0;
+    int32_t factorisations = 0;      ///< of tangents
     int32_t pseudo_steps = 0;        ///< of these iterations, steps in pseudo-time
     int32_t yielding = 0;            ///< points on the yield surface
     double residual = 0;             ///< norm of the unbalanced force over the norm of the loads, -
@@ -42,11 +42,13 @@ public:
     static constexpr double tolerance = 1e-7;
 
     /// `solids`: one a soil. `prescribed`: nodes x dimension, non-zero where the displacement is given. `gravity` in m/s2,
-    /// downwards. Mesh and points are the caller's; their present state is the accepted one.
+    /// downwards. Mesh and points are the caller's; their present state is the accepted one, without displacement.
+    /// Throws Error(invalid_scene) where a triangle has too many neighbours.
     Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, std::span<const uint8_t> prescribed, double gravity);
 
     /// Finds the displacement increment from the accepted state that balances the loads. The points' stress, strain, plastic
-    /// strain and mobilised strength are a trial state until accept() or reject().
+    /// strain and mobilised strength are a trial state until accept() or reject(). Starts from the increment of the last solve
+    /// where that was neither accepted nor rejected: loads that hardly differ are then soon balanced.
     EquilibriumOutcome solve(const Loads& loads);
 
     /// As solve() for a skeleton that does not yield: gravity turned on elastically.
@@ -61,7 +63,8 @@ public:
     /// Back to the last accepted state, bit for bit.
     void reject();
 
-    /// The caller has put mesh and points back to an earlier accepted state; this was the nodes' displacement then.
+    /// After mesh and points were put back to a state that had been accepted with this displacement (nodes x dimension, m): the
+    /// next solve goes as it went from there.
     void restore(std::span<const double> displacement);
 
     /// Nodes x dimension. `increment` is that of the last solve; `reaction` (N per m) is zero where not prescribed.
@@ -83,6 +86,9 @@ private:
     // equilibrium.cpp
     void start(const Loads& loads);
     void set_external_force(const Loads& loads);
+    void update_geometry();
+    void forget_increment();
+    [[nodiscard]] double largest_displacement_gradient() const;
     void finish(EquilibriumOutcome& outcome);
 
     // iterations.cpp
@@ -90,14 +96,13 @@ private:
     double unbalance_elastically();
     void set_residual();
     double relative_residual();
-    bool predict(double wanted, EquilibriumOutcome& outcome);
+    void predict(double wanted, EquilibriumOutcome& outcome);
     bool accelerate(EquilibriumOutcome& outcome);
     bool newton(EquilibriumOutcome& outcome);
     bool line_search(double& unbalanced);
     bool creep(EquilibriumOutcome& outcome);
     double elastic_displacement(EquilibriumOutcome& outcome);
     bool watch(CollapseWatch& watch, std::span<const double> last_direction) const;
-    bool factorise_elastic(EquilibriumOutcome& outcome);
     bool factorise_tangent(double viscosity, EquilibriumOutcome& outcome);
     void solve_for_direction(Factor& factor, EquilibriumOutcome& outcome);
     void step_along(double length);
@@ -110,8 +115,9 @@ private:
     Skeleton skeleton_;
     Stiffness stiffness_;
     Factor elastic_, tangent_;
-    bool elastic_is_factorised_ = false;
-    bool elastic_is_fresh_ = false;  // of the present geometry
+    std::vector<double> undeformed_stiffness_;  // values of the elastic matrix
+    bool was_deformed_ = false;                 // at the last update: elastic_ is not the undeformed one
+    bool is_at_start_ = true;                   // no increment to start from
 
     std::vector<double> displacement_, increment_, reaction_;      // nodes x dimension
     std::vector<double> external_, internal_, best_;               // nodes x dimension

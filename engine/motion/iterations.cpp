@@ -50,21 +50,15 @@ double Equilibrium::relative_residual() {
 }
 
 /// Solves for a skeleton that does not yield, until the unbalanced force has fallen by the factor wanted, or below the tolerance.
-/// The factorisation is kept until the geometry has moved so far that it converges slowly.
-bool Equilibrium::predict(double wanted, EquilibriumOutcome& outcome) {
-    constexpr double worth_keeping = 0.1;
+void Equilibrium::predict(double wanted, EquilibriumOutcome& outcome) {
     constexpr int32_t most_solves = 20;
-    if (!elastic_is_factorised_ && !factorise_elastic(outcome)) return false;
     const double start = unbalance_elastically();
-    double before = start;
-    for (int32_t k = 0; k < most_solves && before > wanted * start && relative_residual() > tolerance / 10; ++k) {
+    double unbalanced = start;
+    for (int32_t k = 0; k < most_solves && unbalanced > wanted * start && relative_residual() > tolerance / 10; ++k) {
         solve_for_direction(elastic_, outcome);
         step_along(1);
-        const double after = unbalance_elastically();
-        if (after > worth_keeping * before && !elastic_is_fresh_ && !factorise_elastic(outcome)) return false;
-        before = after;
+        unbalanced = unbalance_elastically();
     }
-    return true;
 }
 
 /// Iterates with the elastic stiffness. Leaves the best iterate, and gives up, when it has not improved enough for a while.
@@ -187,13 +181,6 @@ bool Equilibrium::watch(CollapseWatch& watch, std::span<const double> last_direc
     }
     const double lengths = norm(direction_) * norm(last_direction);
     return watch.add(displacement, loads > 0 ? surplus / loads : 0, lengths > 0 ? dot(direction_, last_direction) / lengths : 1);
-}
-
-bool Equilibrium::factorise_elastic(EquilibriumOutcome& outcome) {
-    stiffness_.assemble_elastic(points_, skeleton_, elastic_.matrix);
-    ++outcome.factorisations;
-    elastic_is_factorised_ = elastic_is_fresh_ = elastic_.solver->factorise(elastic_.matrix);
-    return elastic_is_factorised_;
 }
 
 bool Equilibrium::factorise_tangent(double viscosity, EquilibriumOutcome& outcome) {

@@ -1,6 +1,10 @@
 #include "motion/stiffness.hpp"
 
+#include "error.hpp"
+
 #include <algorithm>
+#include <array>
+#include <string>
 
 namespace talus {
 
@@ -9,6 +13,8 @@ namespace {
 using Eigen::Dynamic;
 using Eigen::Matrix;
 using Eigen::Matrix4d;
+
+constexpr size_t most_stencil_nodes = 48;  // on which the strain of one cell depends
 
 /// One column of B: the strain (xx, yy, zz, xy) of a unit displacement along x, then along y, with the mean dilatation b.
 void strain_columns(const double* g, const double* b, double* along_x, double* along_y) {
@@ -40,6 +46,11 @@ Stiffness::Stiffness(const CellKinematics& kinematics, const Equations& equation
 
     const auto numbers_of = [&](int32_t cell) {
         std::vector<int32_t> numbers;
+        if (kinematics.stencil(cell).size() > most_stencil_nodes) {
+            throw Error(Status::invalid_scene, "ground: the triangles that meet triangle " + std::to_string(cell) + " have " +
+                                                   std::to_string(kinematics.stencil(cell).size()) + " nodes; at most " +
+                                                   std::to_string(most_stencil_nodes) + " are allowed");
+        }
         for (const int32_t node : kinematics.stencil(cell)) {
             for (int32_t k = 0; k < dimension; ++k) numbers.push_back(equations.number[static_cast<size_t>(node * dimension + k)]);
         }
@@ -122,11 +133,12 @@ void Stiffness::add_quad(const Points& points, int32_t cell, const Moduli& modul
 
 template <class Moduli>
 void Stiffness::add_triangle(const Points& points, int32_t cell, const Moduli& moduli, double* value) const {
-    constexpr Eigen::Index most_columns = 96;  // 48 nodes around a triangle
+    constexpr auto most_columns = static_cast<int>(2 * most_stencil_nodes);
     const auto first = static_cast<size_t>(points.cell_start[static_cast<size_t>(cell)]);
     const auto dilatation = kinematics_.dilatation(cell);
     const auto g = kinematics_.gradient<Tri3>(cell, 0);
-    Matrix<double, 4, Dynamic, Eigen::ColMajor, 4, most_columns> b(4, static_cast<Eigen::Index>(dilatation.size()));
+    using StrainMatrix = Matrix<double, 4, Dynamic, Eigen::ColMajor, 4, most_columns>;
+    StrainMatrix b(4, static_cast<Eigen::Index>(dilatation.size()));
     constexpr std::array<double, 2> none = {0, 0};
     for (size_t a = 0; 2 * a < dilatation.size(); ++a) {
         const double* const own = a < Tri3::nodes ? g[a].data() : none.data();
@@ -134,7 +146,7 @@ void Stiffness::add_triangle(const Points& points, int32_t cell, const Moduli& m
     }
     Matrix4d sum = Matrix4d::Zero();  // the three points strain alike
     for (size_t i = 0; i < Tri3::points; ++i) sum += points.volume[first + i] * moduli(first + i);
-    const Matrix<double, 4, Dynamic, Eigen::ColMajor, 4, most_columns> stress = sum * b;
+    const StrainMatrix stress = sum * b;
     const int32_t* place = place_.data() + place_start_[static_cast<size_t>(cell)];
     for (Eigen::Index j = 0; j < b.cols(); ++j) {
         for (Eigen::Index i = 0; i < b.cols(); ++i) value[*place++] += b.col(i).dot(stress.col(j));
