@@ -14,9 +14,9 @@ def _candidates():
     if "TALUS_LIBRARY" in os.environ:
         yield os.environ["TALUS_LIBRARY"]
         return
-    build = pathlib.Path(__file__).resolve().parents[3] / "build"
-    yield from (str(build / preset / "lib" / NAME) for preset in ("release", "debug")
-                if (build / preset / "lib" / NAME).exists())
+    root = pathlib.Path(__file__).resolve().parents[3]  # of the checkout, or the lib folder of an installation
+    places = (root / "build/release/lib" / NAME, root / "build/debug/lib" / NAME, root / NAME)
+    yield from (str(place) for place in places if place.exists())
     yield NAME
 
 
