@@ -27,8 +27,8 @@ Vector natural_coordinates(Tri3, const NodePlaces<Tri3>& node, const Vector& at)
 }
 
 /// With h = x - centre, the bilinear map is h = xi e + eta f + xi eta g. Taking the cross product with e + eta g leaves
-/// a quadratic in eta alone; its root in the cell is the one whose slope, the Jacobian, is positive, and the form of the root
-/// taken here divides by twice the Jacobian at (xi, 0), so it holds for parallelograms too.
+/// a quadratic in eta alone; its root in the cell is the one whose slope, the Jacobian, is positive, and the form of
+/// the root taken here divides by twice the Jacobian at (xi, 0), so it holds for parallelograms too.
 Vector natural_coordinates(Quad4, const NodePlaces<Quad4>& node, const Vector& at) {
     Vector e{}, f{}, g{}, h{};
     for (size_t k = 0; k < 2; ++k) {

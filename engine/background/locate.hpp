@@ -10,9 +10,8 @@
 namespace talus {
 
 struct CellPlace {
-    int32_t cell = -1;  ///< -1: outside the ground
-    std::array<double, 2>
-        natural{};  ///< natural coordinates of the cell's shape (background/shape.hpp); in a column the first
+    int32_t cell = -1;                ///< -1: outside the ground
+    std::array<double, 2> natural{};  ///< of the cell's shape (background/shape.hpp); in a column only the first
 };
 
 /// Bins of about a cell's size over the mesh. The mesh must outlive the locator; where its nodes move, make a new one.
@@ -20,8 +19,9 @@ class Locator {
 public:
     explicit Locator(const Mesh& mesh);
 
-    /// The cell at x, y (m); in a column x is not looked at. On an edge it is the cell with the least number. A place within 1e-9 of
-    /// the mesh's extent outside the boundary counts as on it, so natural coordinates may lie outside the shape by as little.
+    /// The cell at x, y (m); in a column x is not looked at. On an edge it is one of the two, always the same. A place
+    /// outside the boundary by less than 1e-9 of the mesh's extent counts as on it, so its natural coordinates may lie
+    /// a little outside the shape.
     [[nodiscard]] CellPlace locate(double x, double y) const;
 
 private:

@@ -1,5 +1,6 @@
-// Linear shape functions on the fitted mesh's cells and their quadrature, one struct a shape, so that a loop over cells of
-// one shape is compiled for it. Node order is that of Mesh::cell_nodes: a line upwards, plane cells counter-clockwise.
+// Linear shape functions on the fitted mesh's cells and their quadrature, one struct a shape, so that a loop over cells
+// of one shape is compiled for it. Node order is that of Mesh::cell_nodes: a line upwards, plane cells
+// counter-clockwise.
 #pragma once
 
 #include <array>
@@ -43,7 +44,8 @@ struct Tri3 {
     static constexpr Gradients gradients(const Natural&) { return {{{-1, -1}, {1, 0}, {0, 1}}}; }
 };
 
-/// Square on -1 <= xi, eta <= 1, from (-1,-1) counter-clockwise; 2 x 2 Gauss points in the same order, exact for bicubics.
+/// Square on -1 <= xi, eta <= 1, from (-1,-1) counter-clockwise; 2 x 2 Gauss points in the same order, exact for
+/// bicubics.
 struct Quad4 {
     static constexpr size_t nodes = 4;
     static constexpr size_t dimension = 2;

@@ -16,6 +16,8 @@
 namespace talus {
 namespace {
 
+constexpr double farthest_off_plane = 1e-6;  // m: what rounding leaves of a zero
+
 [[noreturn]] void fail(const GmshFile& file, int32_t line, const std::string& what) {
     throw Error(Status::invalid_scene, gmsh_place(file.name, line) + what);
 }
@@ -23,8 +25,9 @@ namespace {
 GmshFile read_gmsh(const std::string& name) {
     std::ifstream stream(name, std::ios::binary);
     std::ostringstream text;
-    if (stream) text << stream.rdbuf();
-    if (!stream || !text) throw Error(Status::io, "ground.mesh.file: cannot read '" + name + "'");
+    if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
+    if (!stream.is_open() || stream.bad() || !text)
+        throw Error(Status::io, "ground.mesh.file: cannot read '" + name + "'");
     return parse_gmsh(text.view(), name);
 }
 
@@ -70,7 +73,8 @@ int32_t cell_soil(const GmshFile& file, const GmshElement& element, const std::m
              : "physical surface " + std::to_string(group) + " has no name; name it after a soil");
 }
 
-/// Adds the node to the mesh when a cell first uses it: a file also holds nodes that no cell uses, such as centres of arcs.
+/// Adds the node to the mesh when a cell first uses it: a file also holds nodes that no cell uses, such as centres of
+/// arcs.
 int32_t use_node(const GmshFile& file, size_t number, std::vector<int32_t>& mesh_node, Mesh& mesh) {
     if (mesh_node[number] < 0) {
         mesh_node[number] = mesh.node_count();
@@ -102,7 +106,7 @@ std::vector<int32_t> add_cells(const Scene& scene, const GmshFile& file, Mesh& m
         mesh.cell_soil.push_back(cell_soil(file, element, soils));
         for (int32_t i = 0; i < element.size; ++i) {
             const size_t number = find_node(file, element, element.nodes[static_cast<size_t>(i)]);
-            if (file.nodes[number].z != 0) {
+            if (std::abs(file.nodes[number].z) > farthest_off_plane) {
                 fail(file, element.line,
                      "the cell has node " + std::to_string(file.nodes[number].tag) + " with z = " +
                          number_text(file.nodes[number].z) + "; a section lies in the plane z = 0, y being up");

@@ -111,9 +111,9 @@ private:
 int32_t element_size(int64_t type, const Words& words) {
     if (type == 15) return 1;
     if (type >= 1 && type <= 3) return static_cast<int32_t>(type) + 1;
-    words.fail(
-        "element type " + std::to_string(type) +
-        ": only points (15), 2-node lines (1), 3-node triangles (2) and 4-node quads (3) are allowed; a plane mesh of first order");
+    words.fail("element type " + std::to_string(type) +
+               ": only points (15), 2-node lines (1), 3-node triangles (2) and 4-node quads (3) "
+               "are allowed: a plane mesh of first order");
 }
 
 void add_element(int64_t type, int64_t owner, Words& words, GmshFile& file) {
@@ -226,19 +226,21 @@ void read_format(Words& words, GmshFile& file) {
 }
 
 void read_section(std::string_view section, Words& words, GmshFile& file) {
-    if (section == "$MeshFormat")
+    const std::string end = "$End" + std::string(section.substr(1));
+    if (section == "$MeshFormat") {
         read_format(words, file);
-    else if (section == "$PhysicalNames")
+    } else if (section == "$PhysicalNames") {
         read_physical_names(words, file);
-    else if (section == "$Entities" && file.has_entities)
+    } else if (section == "$Entities" && file.has_entities) {
         read_entities_4(words, file);
-    else if (section == "$Nodes")
+    } else if (section == "$Nodes") {
         file.has_entities ? read_nodes_4(words, file) : read_nodes_2(words, file);
-    else if (section == "$Elements")
+    } else if (section == "$Elements") {
         file.has_entities ? read_elements_4(words, file) : read_elements_2(words, file);
-    else
-        return words.skip_to("$End" + std::string(section.substr(1)));
-    words.expect("$End" + std::string(section.substr(1)));
+    } else {
+        return words.skip_to(end);
+    }
+    words.expect(end);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What a Gmsh file says, before any of it is given a meaning. Format: Gmsh reference manual, "MSH file format" (4.1) and its
-// legacy version 2.2; ASCII.
+// What a Gmsh file says, before any of it is given a meaning. Format: Gmsh reference manual, "MSH file format" (4.1)
+// and its legacy version 2.2; ASCII.
 #pragma once
 
 #include <array>

@@ -109,8 +109,9 @@ void check_nodes(const Mesh& mesh) {
         refuse(node_text(mesh, static_cast<int32_t>(unused - used.begin())) + " belongs to no cell");
 }
 
-/// Twice the areas of the triangles at the corners of a plane cell over the square of its longest edge: positive at all of them
-/// where the cell is convex and counter-clockwise. For a quad that is the Jacobian at the corners, for a triangle everywhere.
+/// Twice the areas of the triangles at the corners of a plane cell over the square of its longest edge: positive at all
+/// of them where the cell is convex and counter-clockwise. For a quad that is the Jacobian at the corners, for a
+/// triangle everywhere.
 double least_corner(const Mesh& mesh, int32_t cell) {
     const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
     const size_t count = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell) + 1]) - first;
@@ -147,8 +148,8 @@ void check_shapes(const Mesh& mesh) {
     }
 }
 
-/// Looks through the nodes in bins of width `near` in x, shifted by `offset`, each bin ordered by y: two nodes of a bin within
-/// `near` in y are neighbours. With the shifts 0 and 1/2 every two nodes within near/2 share a bin once.
+/// Looks through the nodes in bins of width `near` in x, shifted by `offset`, each bin ordered by y: two nodes of a bin
+/// within `near` in y are neighbours. With the shifts 0 and 1/2 every two nodes within near/2 share a bin once.
 void check_bin_duplicates(const Mesh& mesh, double near, double offset) {
     struct Entry {
         double bin;
@@ -255,10 +256,7 @@ void check_mesh(const Mesh& mesh, const std::string& path) try {
     check_nodes(mesh);
     check_shapes(mesh);
     check_duplicates(mesh);
-    if (mesh.dimension == 1)
-        check_column_topology(mesh);
-    else
-        check_plane_topology(mesh);
+    mesh.dimension == 1 ? check_column_topology(mesh) : check_plane_topology(mesh);
 } catch (const Error& error) {
     throw Error(error.status, path + ": " + error.what());
 }

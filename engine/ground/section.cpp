@@ -58,25 +58,24 @@ std::vector<double> grid_lines(const SectionGround& section, const std::vector<c
     return lines;
 }
 
-/// Elevations of the layer boundaries on one grid line: terrain, layer tops, base.
+[[noreturn]] void refuse_crossing(size_t k, bool is_base, double x, double y, double above) {
+    const std::string entry = is_base ? "ground.section.base" : "ground.section.layers[" + std::to_string(k) + "].top";
+    const std::string upper = k == 1 ? "the terrain" : "the top of layers[" + std::to_string(k - 1) + "]";
+    throw Error(Status::invalid_scene, entry + ": at x = " + number_text(x) + " m it lies at " + number_text(y) +
+                                           " m, above " + upper + " (" + number_text(above) +
+                                           " m); layers may touch but not cross");
+}
+
+/// Elevations of the layer boundaries on one grid line: terrain, layer tops, base. Where a layer is pinched out, two
+/// are equal.
 std::vector<double> interfaces_at(const std::vector<const Profile*>& profiles, double x, double height) {
     const double near = 1e-9 * height;
-    std::vector<double> interface;
-    for (size_t k = 0; k < profiles.size(); ++k) {
-        double y = elevation(*profiles[k], x);
-        if (k > 0 && y > interface.back() - near) {
-            const bool base = k + 1 == profiles.size();
-            const std::string entry =
-                base ? "ground.section.base" : "ground.section.layers[" + std::to_string(k) + "].top";
-            const std::string above = k == 1 ? "the terrain" : "the top of layers[" + std::to_string(k - 1) + "]";
-            if (y > interface.back() + near) {
-                throw Error(Status::invalid_scene,
-                            entry + ": at x = " + number_text(x) + " m it lies at " + number_text(y) + " m, above " +
-                                above + " (" + number_text(interface.back()) + " m); layers may touch but not cross");
-            }
-            y = interface.back();  // the layer above is pinched out here
-        }
-        interface.push_back(y);
+    std::vector<double> interface = {elevation(*profiles.front(), x)};
+    for (size_t k = 1; k < profiles.size(); ++k) {
+        const double y = elevation(*profiles[k], x);
+        const double above = interface.back();
+        if (y > above + near) refuse_crossing(k, k + 1 == profiles.size(), x, y, above);
+        interface.push_back(y > above - near ? above : y);
     }
     if (!(interface.front() - interface.back() > near)) {
         throw Error(Status::invalid_scene, "ground.section.base: at x = " + number_text(x) +
@@ -87,8 +86,8 @@ std::vector<double> interfaces_at(const std::vector<const Profile*>& profiles, d
 
 // --- grading ---------------------------------------------------------------------------------------------------------
 
-/// Height of a cell whose top is at this depth. Below the graded depth cells grow by the ratio `growth`: with z the depth below
-/// it, h (growth + growth^2 + ... ) = z makes the next one growth h + (growth - 1) z.
+/// Height of a cell whose top is at this depth. Below the graded depth cells grow by the ratio `growth`: with z the
+/// depth below it, h (growth + growth^2 + ... ) = z makes the next one growth h + (growth - 1) z.
 double cell_height(const SectionGround& section, double growth, double depth) {
     const double surface_height = section.surface_cell_height;
     const double below = depth - section.graded_depth;
@@ -116,7 +115,8 @@ int32_t rows_needed(const SectionGround& section, double top, double bottom, dou
     return rows;
 }
 
-/// The growth with which `rows` cells fill a layer, between 1 and the section's; the depth they reach increases with it.
+/// The growth with which `rows` cells fill a layer, between 1 and the section's; the depth they reach increases with
+/// it.
 double fitting_growth(const SectionGround& section, double top, double bottom, int32_t rows) {
     double low = 1;
     double high = section.growth;
@@ -165,8 +165,8 @@ std::vector<int32_t> layer_rows(const SectionGround& section, const std::vector<
     return rows;
 }
 
-/// Adds the nodes of one grid line from the base up; returns the node of each row boundary from the surface down. Boundaries
-/// that coincide, where a layer is pinched out, share a node.
+/// Adds the nodes of one grid line from the base up; returns the node of each row boundary from the surface down.
+/// Boundaries that coincide, where a layer is pinched out, share a node.
 std::vector<int32_t> add_line(const SectionGround& section, double x, const std::vector<double>& interface,
                               const std::vector<int32_t>& rows, Mesh& mesh) {
     const double surface = interface.front();
@@ -174,10 +174,11 @@ std::vector<int32_t> add_line(const SectionGround& section, double x, const std:
     for (size_t k = 0; k < rows.size(); ++k) {
         const double top = surface - interface[k];
         const double bottom = surface - interface[k + 1];
-        if (bottom > top)
+        if (bottom > top) {
             add_row_depths(section, top, bottom, rows[k], depths);
-        else
+        } else {
             depths.insert(depths.end(), static_cast<size_t>(rows[k]), top);
+        }
     }
     std::vector<int32_t> nodes(depths.size());
     for (size_t row = depths.size(); row-- > 0;) {
@@ -220,6 +221,7 @@ Mesh build_section(const Scene& scene) {
     double height = 0;
     for (const Place& place : section.terrain) height = std::max(height, place[1] - elevation(section.base, place[0]));
     std::vector<std::vector<double>> interfaces;
+    interfaces.reserve(lines.size());
     for (const double x : lines) interfaces.push_back(interfaces_at(profiles, x, height));
     const std::vector<int32_t> rows = layer_rows(section, lines, interfaces);
 
