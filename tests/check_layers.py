@@ -35,7 +35,7 @@ SOURCES = {".cpp", ".hpp", ".c", ".h"}
 
 def part_of(engine, header):
     """The engine's part that a header belongs to (engine.* is the part `engine`), or None for a header of others."""
-    if not (engine / header).exists() and header.split("/")[0] not in ENGINE:
+    if not (engine / header).is_file() and header.split("/")[0] not in ENGINE:
         return None
     return header.split("/")[0] if "/" in header else "engine"
 
@@ -48,13 +48,13 @@ def engine_problem(engine, file, header):
     if header == FOR_ALL or other == own or other in ENGINE[own] or header in ENGINE[own]:
         return None
     if other is None:
-        beside = (file.parent / header).exists() or header.startswith(".")
+        beside = (file.parent / header).is_file() or header.startswith(".")
         return "is not written from the engine's root" if beside else None
     return f"{own} may not know {other}"
 
 
 def outside_problem(root, header, allowed):
-    talus_header = part_of(root / "engine", header) or (root / "capi/include" / header).exists()
+    talus_header = part_of(root / "engine", header) or (root / "capi/include" / header).is_file()
     if not talus_header or header in allowed:
         return None
     return f"may know {', '.join(sorted(allowed))} alone"
