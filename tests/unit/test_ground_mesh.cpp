@@ -61,7 +61,7 @@ TEST_CASE("arrays become the mesh as they are, with sides") {
     CHECK(side_length(mesh, "surface") == doctest::Approx(1 + std::sqrt(2.)));
 }
 
-TEST_CASE("steps of the bedrock are base; cliffs and overhangs are surface") {
+TEST_CASE("steps of the bedrock are base, cliffs and overhangs are surface") {
     // Bedrock one step up from x = 2; the ground two high on the left, with an overhang to x = 3, and one high on the
     // right.
     const auto keep = [](int32_t x, int32_t y) {
