@@ -20,6 +20,7 @@ DRY_DENSITY = 1800.0
 SHEAR = YOUNG / (2 * (1 + POISSON))
 LAME = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
 NORMAL = LAME + 2 * SHEAR * np.eye(3)  # normal stresses by normal strains, 3 x 3
+ELASTIC = np.block([[NORMAL[:2, :2], np.zeros((2, 1))], [np.zeros((1, 2)), np.full((1, 1), SHEAR)]])  # by xx, yy, 2xy strains
 SINE, COSINE = np.sin(FRICTION), np.cos(FRICTION)
 TOLERANCE = 1e-7  # of the norm of the weight
 
@@ -191,10 +192,8 @@ class Mechanics:
 
     def gravity(self, pressure):
         """Elastic gravity, then Mohr-Coulomb equilibrium; displacement counts from there."""
-        elastic = np.zeros((3, 3))
-        elastic[:2, :2], elastic[2, 2] = NORMAL[:2, :2], SHEAR
         residual, _ = self.forces(self.stress, pressure)
-        self.stress = self.trial(self.solve(np.tile(elastic, (self.stress.shape[0], 1, 1)), -residual))
+        self.stress = self.trial(self.solve(np.tile(ELASTIC, (self.stress.shape[0], 1, 1)), -residual))
         if not self.step(pressure, pressure):
             raise RuntimeError("no initial equilibrium")
         self.displacement[:] = 0.0
@@ -208,33 +207,30 @@ class Mechanics:
         middle = 0.5 * (old + new)
         return self.step(old, middle, depth + 1) and self.step(middle, new, depth + 1)
 
-    def equilibrium(self, pressure, largest=25):
+    def equilibrium(self, pressure):
+        """Newton without a line search: points that switch between plane and edge raise the residual on the way, and a
+        search by its norm makes the iteration cycle. Then damped, with a little of the elastic tangent mixed in."""
+        return self.iterate(pressure, 1.0, 0.0, 25) or self.iterate(pressure, 0.5, 0.02, 60)
+
+    def iterate(self, pressure, damping, elastic_part, largest):
         suction = np.maximum(-pressure, 0.0)
         cohesion = COHESION + suction * soil.saturation(pressure) * np.tan(FRICTION)
         increment = np.zeros(self.size)
-
-        def state(increment):
+        for _ in range(largest):
             stress, tangent, yields = return_mapping(self.trial(increment), cohesion)
             residual, weight = self.forces(stress, pressure)
-            return stress, tangent, yields, residual, np.linalg.norm(residual[self.free]) / np.linalg.norm(weight)
-
-        stress, tangent, yields, residual, norm = state(increment)
-        for _ in range(largest):
+            norm = np.linalg.norm(residual[self.free]) / np.linalg.norm(weight)
             if norm < TOLERANCE:
                 self.stress, self.displacement, self.yields = stress, self.displacement + increment, yields
                 return True
-            change = self.solve(tangent, -residual)
+            if not norm < 1.0:
+                return False
             self.iterations += 1
-            damping, best = 1.0, None
-            while damping > 0.05:
-                found = state(increment + damping * change)
-                if best is None or found[-1] < best[1][-1]:
-                    best = (damping, found)
-                if found[-1] < (1 - 0.1 * damping) * norm:
-                    break
-                damping *= 0.5
-            increment = increment + best[0] * change
-            stress, tangent, yields, residual, norm = best[1]
+            try:
+                change = self.solve((1 - elastic_part) * tangent + elastic_part * ELASTIC, -residual)
+            except RuntimeError:  # an exactly singular tangent
+                return False
+            increment = increment + damping * change
         return False
 
     def volumetric_strain(self):
