@@ -2,7 +2,6 @@
 #include "scene/outline.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 

@@ -204,11 +204,12 @@ void check_cell(const Check& check, const MeshGround& mesh, size_t cell) {
                  "): must be a node's number, 0 to " + std::to_string(nodes - 1));
     }
     const double corner = least_corner(mesh.position, &mesh.cell_nodes[first], count);
+    if (corner > 0) return;
     check.at("cellNodes", first)
-        .require(corner > 0, "cell " + std::to_string(cell) +
-                                 " is inverted or flat: its nodes must go counter-clockwise around a "
-                                 "convex cell (twice the area at its worst corner is " +
-                                 value_text(corner) + " m2)");
+        .say("cell " + std::to_string(cell) +
+             " is inverted or flat: its nodes must go counter-clockwise around a convex cell "
+             "(twice the area at its worst corner is " +
+             value_text(corner) + " m2)");
 }
 
 /// Whether the offsets can be followed.
@@ -276,12 +277,12 @@ void check_probes(const Check& scene_check, const Scene& scene) {
     const Outline outline(scene.ground);
     const bool column = scene.ground.kind == GroundKind::column;
     for (size_t i = 0; i < scene.probes.size(); ++i) {
-        const auto [x, y] = scene.probes[i].place;
+        const Place place = scene.probes[i].place;
+        const std::string at = joined({value_text(place[0]), value_text(place[1])});
         scene_check.at("probes", i)
             .at("place")
-            .require(outline.inside(scene.probes[i].place), "(" + value_text(x) + ", " + value_text(y) +
-                                                                ") m is outside the ground" +
-                                                                (column ? "; x is 0 in a column" : ""));
+            .require(outline.inside(place),
+                     "(" + at + ") m is outside the ground" + (column ? "; x is 0 in a column" : ""));
     }
 }
 

@@ -309,7 +309,8 @@ struct SectionLayer {
 struct MeshGround {
   # A mesh of triangles and quads: a file or the arrays.
   file @0 :Text;
-  # A Gmsh file, version 2.2 or 4.1, ASCII. Its physical surfaces have names of soils; its physical lines may name more
+  # A Gmsh file, version 2.2 or 4.1, ASCII, sought in the folder of the scene's file (of a scene from memory: in the host's
+  # working directory). Its physical surfaces have names of soils; its physical lines may name more
   # sides than `base`, `left`, `right` and `surface`.
   position @1 :List(Float64) $limits(unit = "m", low = -1e5, high = 1e5);
   # x, y of each node.

@@ -128,7 +128,7 @@ TEST_CASE("bytes that are no message are refused") {
     CHECK(said_of_bytes(std::vector(800, std::byte{0xff})).find("Cap'n Proto bytes: ") == 0);
     CHECK(said_of_bytes(std::vector(800, std::byte{0})) != "");
     const std::string text = sample_text("column");
-    CHECK(said_of_bytes(std::as_bytes(std::span(text).first(1000))) != "");
+    CHECK(said_of_bytes(std::as_bytes(std::span(text).first(800))) != "");
 }
 
 TEST_CASE("bytes need no alignment") {
