@@ -22,7 +22,7 @@ LAME = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
 NORMAL = LAME + 2 * SHEAR * np.eye(3)  # normal stresses by normal strains, 3 x 3
 ELASTIC = np.block([[NORMAL[:2, :2], np.zeros((2, 1))], [np.zeros((1, 2)), np.full((1, 1), SHEAR)]])  # by xx, yy, 2xy strains
 SINE, COSINE = np.sin(FRICTION), np.cos(FRICTION)
-TOLERANCE = 1e-7  # of the norm of the weight
+TOLERANCE = 1e-6  # of the norm of the weight
 
 
 def mechanisms(kind):
@@ -208,18 +208,22 @@ class Mechanics:
         return self.step(old, middle, depth + 1) and self.step(middle, new, depth + 1)
 
     def equilibrium(self, pressure):
-        """Newton without a line search: points that switch between plane and edge raise the residual on the way, and a
-        search by its norm makes the iteration cycle. Then damped, with a little of the elastic tangent mixed in."""
-        return self.iterate(pressure, 1.0, 0.0, 25) or self.iterate(pressure, 0.5, 0.02, 60)
+        """Newton, full steps first: points that switch between plane and edge raise the residual on the way, and a search
+        by its norm can cycle. Where full steps cycle, with a search; last damped, with a little of the elastic tangent."""
+        return self.iterate(pressure, 20) or self.iterate(pressure, 25, search=True) or self.iterate(pressure, 60, 0.5, 0.02)
 
-    def iterate(self, pressure, damping, elastic_part, largest):
+    def iterate(self, pressure, largest, damping=1.0, elastic_part=0.0, search=False):
         suction = np.maximum(-pressure, 0.0)
         cohesion = COHESION + suction * soil.saturation(pressure) * np.tan(FRICTION)
-        increment = np.zeros(self.size)
-        for _ in range(largest):
+
+        def state(increment):
             stress, tangent, yields = return_mapping(self.trial(increment), cohesion)
             residual, weight = self.forces(stress, pressure)
-            norm = np.linalg.norm(residual[self.free]) / np.linalg.norm(weight)
+            return increment, stress, tangent, yields, residual, np.linalg.norm(residual[self.free]) / np.linalg.norm(weight)
+
+        found = state(np.zeros(self.size))
+        for _ in range(largest):
+            increment, stress, tangent, yields, residual, norm = found
             if norm < TOLERANCE:
                 self.stress, self.displacement, self.yields = stress, self.displacement + increment, yields
                 return True
@@ -230,7 +234,11 @@ class Mechanics:
                 change = self.solve((1 - elastic_part) * tangent + elastic_part * ELASTIC, -residual)
             except RuntimeError:  # an exactly singular tangent
                 return False
-            increment = increment + damping * change
+            found = state(increment + damping * change)
+            part = damping
+            while search and part > 0.1 and found[-1] > (1 - 0.1 * part) * norm:
+                part *= 0.5
+                found = min(found, state(increment + part * change), key=lambda one: one[-1])
         return False
 
     def volumetric_strain(self):
