@@ -190,7 +190,6 @@ void Simulation::find_steady_flow() {
     FlowForcing steady = flow_->forcing;
     for (Ramp& value : steady.held) value.rate = 0;
     for (Ramp& value : steady.flux) value.rate = 0;
-    double guess = std::isnan(initial.surface_pressure) ? 0.0 : initial.surface_pressure;
     if (std::isnan(initial.surface_pressure)) {
         for (size_t i = 0; i < boundaries.surface.size(); ++i) steady.rain[i] = boundaries.surface[i].rain_area * initial.surface_rain;
     } else {
@@ -206,9 +205,24 @@ void Simulation::find_steady_flow() {
     system.forcing = steady;
     system.skeleton.pore_volume = flow_->skeleton.pore_volume;
     FlowIntegrator integrator(system, tolerance_);
-    state_.flow.pressure.assign(static_cast<size_t>(mesh_.node_count()), guess);
+    state_.flow.pressure = steady_guess();
     if (!integrator.find_steady(state_.flow))
         throw Error(Status::not_converged, "initial.flow = steady: no steady state was found under the boundaries given");
+}
+
+// Hydrostatic under the mean head that the boundaries hold, and not drier than the surface.
+std::vector<double> Simulation::steady_guess() const {
+    const double unit_weight = scene_.water.density * scene_.gravity;
+    const double driest = std::isnan(scene_.initial.surface_pressure) ? 0.0 : scene_.initial.surface_pressure;
+    const auto nodes = static_cast<size_t>(mesh_.node_count());
+    const std::vector<HeldNode>& held = flow_->boundaries.held;
+    if (held.empty()) return std::vector<double>(nodes, driest);
+    double head = 0;
+    for (size_t h = 0; h < held.size(); ++h)
+        head += (flow_->forcing.held[h].start / unit_weight + place_of(held[h].node)[1]) / static_cast<double>(held.size());
+    std::vector<double> guess(nodes);
+    for (size_t i = 0; i < nodes; ++i) guess[i] = std::max(driest, unit_weight * (head - place_of(static_cast<int32_t>(i))[1]));
+    return guess;
 }
 
 void Simulation::set_initial_stress() {

@@ -78,6 +78,7 @@ private:
     [[nodiscard]] bool holds(const Boundary& boundary, const Facet& facet, size_t axis) const;
     void set_initial_flow();
     void find_steady_flow();
+    [[nodiscard]] std::vector<double> steady_guess() const;
     void set_initial_stress();
 
     // the exchange (exchange.cpp)

@@ -213,25 +213,32 @@ AdvanceResult FlowIntegrator::advance(FlowState& state, double duration, const A
 }
 
 bool FlowIntegrator::find_steady(FlowState& state) {
-    constexpr double first_step = 1.0;  // s
-    constexpr double last_step = 1e14;  // s
-    Arkode& ark = *arkode_;
+    constexpr double steady = 1e-7;       // imbalance
+    constexpr double nearly = 1e-6;       // imbalance, where longer steps find nothing better
+    constexpr double first_step = 100.0;  // s
+    constexpr double long_step = 1e4;     // s: beyond it round-off in the flows grows with the step
+    constexpr int most_attempts = 200;
+    FlowSystem& system = arkode_->system;
     double step = first_step;
     std::vector<double> trial = state.pressure;
-    ark.system.evaluate(0.0, trial);
-    while (step < last_step) {
-        ark.target.assign(ark.system.stored().begin(), ark.system.stored().end());
-        trial = state.pressure;
-        if (ark.solver.solve(0.0, step, ark.target, 1e-9, trial)) {
-            state.pressure = trial;
-            step *= 4.0;
-        } else {
-            step *= 0.2;
-            if (step < 1e-6 * first_step) return false;
-            ark.system.evaluate(0.0, state.pressure);
-        }
+    if (arkode_->solver.solve_steady(steady, trial)) {
+        state.pressure = trial;
+        return true;
     }
-    return true;
+    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+        system.evaluate(0.0, state.pressure);
+        arkode_->target.assign(system.stored().begin(), system.stored().end());
+        trial = state.pressure;
+        const double tolerance = stage_tolerance * std::max(1.0, step / long_step);
+        const bool solved = arkode_->solver.solve(0.0, step, arkode_->target, tolerance, trial);
+        const double imbalance = system.imbalance();
+        if (solved) state.pressure = trial;
+        if (solved && imbalance < steady) return true;
+        if (!solved && attempt > most_attempts / 2) break;
+        step *= solved ? 8.0 : 0.1;
+    }
+    system.evaluate(0.0, state.pressure);
+    return system.imbalance() < nearly;
 }
 
 }  // namespace talus

@@ -45,7 +45,8 @@ public:
     /// After cancelled or failed, `state` is at the last finished substep; the caller keeps its own copy to undo.
     AdvanceResult advance(FlowState& state, double duration, const AfterSubstep& after_substep);
 
-    /// Brings `state` to the steady state of the system's forcing by ever longer implicit Euler steps. False: none found.
+    /// Brings `state` to the steady state of the system's forcing: by Newton's method, or else by ever longer implicit Euler steps. False:
+    /// none found.
     bool find_steady(FlowState& state);
 
     [[nodiscard]] const FlowStatistics& statistics() const { return statistics_; }  ///< since the start

@@ -8,6 +8,7 @@ namespace talus {
 namespace {
 
 constexpr int most_iterations = 30;
+constexpr int most_steady_iterations = 100;
 constexpr int most_halvings = 6;
 constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more leaves nothing to gain
 
@@ -67,6 +68,38 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, d
         std::copy(trial_.begin(), trial_.end(), pressure.begin());
         error = trial_error;
         if (settled && std::isfinite(error)) return true;
+    }
+    return error <= tolerance;
+}
+
+bool StageSolver::solve_steady(double tolerance, std::span<double> pressure) {
+    const auto& held = system_.boundaries.held;
+    for (size_t h = 0; h < held.size(); ++h) pressure[static_cast<size_t>(held[h].node)] = system_.forcing.held[h].at(0.0);
+    const std::vector<double> nothing(residual_.size(), 0.0);
+    const auto imbalance = [&](std::span<const double> at) {
+        system_.evaluate(0.0, at);
+        merit_ = 0;
+        for (size_t i = 0; i < residual_.size(); ++i) {
+            residual_[i] = system_.is_held(i) ? 0.0 : -system_.inflow()[i];
+            merit_ += std::abs(residual_[i]);
+        }
+        return system_.imbalance();
+    };
+    double error = imbalance(pressure);
+    for (int iteration = 0; iteration < most_steady_iterations && error > tolerance; ++iteration) {
+        ++iterations_;
+        system_.assemble_steady(matrix_);
+        if (!solver_.factorise(matrix_)) return false;
+        std::transform(residual_.begin(), residual_.end(), change_.begin(), [](double r) { return -r; });
+        solver_.solve(matrix_, change_);
+        const double merit = merit_;
+        double length = 1.0;
+        for (int halving = 0; halving <= most_halvings; ++halving, length *= 0.5) {
+            for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = system_.moved_steadily(i, pressure[i], length * change_[i]);
+            error = imbalance(trial_);
+            if (merit_ < merit) break;
+        }
+        std::copy(trial_.begin(), trial_.end(), pressure.begin());
     }
     return error <= tolerance;
 }

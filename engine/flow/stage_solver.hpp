@@ -15,6 +15,9 @@ public:
     /// `tolerance` of its pore volume. On failure returns false and leaves `pressure` as the last iterate.
     bool solve(double t, double step, std::span<const double> target, double tolerance, std::span<double> pressure);
 
+    /// Finds the steady state, inflow = 0, from `pressure`, until the system's imbalance is below `tolerance`.
+    bool solve_steady(double tolerance, std::span<double> pressure);
+
     [[nodiscard]] int64_t iterations() const { return iterations_; }  ///< since the start
 
 private:

@@ -211,11 +211,16 @@ void FlowSystem::evaluate_flux(double t) {
     }
 }
 
-void FlowSystem::assemble(double step, SparseMatrix& matrix) const {
+void FlowSystem::assemble(double step, SparseMatrix& matrix) const { assemble(1.0, step, matrix); }
+
+void FlowSystem::assemble_steady(SparseMatrix& matrix) const { assemble(0.0, 1.0, matrix); }
+
+// storage d(stored)/dp - step d(inflow)/dp
+void FlowSystem::assemble(double storage, double step, SparseMatrix& matrix) const {
     std::fill(matrix.value.begin(), matrix.value.end(), 0.0);
     for (size_t i = 0; i < diagonal_.size(); ++i)
         matrix.value[static_cast<size_t>(diagonal_[i])] =
-            held_node_[i] != 0 ? 1.0 : stored_slope_[i] - step * inflow_slope_[i];
+            held_node_[i] != 0 ? 1.0 : storage * stored_slope_[i] - step * inflow_slope_[i];
     const bool deforming = !skeleton.softness.empty();
     for (size_t l = 0; l < link_places_.size(); ++l) {
         const auto a = static_cast<size_t>(network.links[l].portion_a);
@@ -223,8 +228,8 @@ void FlowSystem::assemble(double step, SparseMatrix& matrix) const {
         double slope_a = step * link_slope_[l][0];
         double slope_b = step * link_slope_[l][1];
         if (deforming) {
-            slope_a += skeleton.projection[l] * pore_stress_slope_[a];
-            slope_b -= skeleton.projection[l] * pore_stress_slope_[b];
+            slope_a += storage * skeleton.projection[l] * pore_stress_slope_[a];
+            slope_b -= storage * skeleton.projection[l] * pore_stress_slope_[b];
         }
         const Places& place = link_places_[l];
         if (held_node_[static_cast<size_t>(network.portions[a].node)] == 0) {
@@ -238,11 +243,29 @@ void FlowSystem::assemble(double step, SparseMatrix& matrix) const {
     }
 }
 
+double FlowSystem::imbalance() const {
+    std::vector<double> passing(inflow_.size(), 0.0);
+    for (size_t l = 0; l < network.links.size(); ++l) {
+        const auto a = static_cast<size_t>(network.links[l].portion_a);
+        const auto b = static_cast<size_t>(network.links[l].portion_b);
+        const double driven = std::abs(state_[b].potential - state_[a].potential);
+        const double falling = std::abs(network.weight_drop[l]) * std::max(state_[a].permeability, state_[b].permeability);
+        for (const size_t end : {a, b})
+            passing[static_cast<size_t>(network.portions[end].node)] += std::abs(network.transmissibility[l]) * (driven + falling);
+    }
+    double largest = 0;
+    for (size_t i = 0; i < passing.size(); ++i)
+        if (held_node_[i] == 0 && passing[i] > 0) largest = std::max(largest, std::abs(inflow_[i]) / passing[i]);
+    return largest;
+}
+
 // Brenner & Cances (2017): Newton in the variable whose curves are straight. Below the steepest point of the retention that is the
-// saturation, above it the pressure; the two join with the slope of that point.
+// saturation, above it the pressure; the two join with the slope of that point. A node that dries
+// stops at saturation first, where the curves show their unsaturated slopes: those above it are flat and lead too far.
 double FlowSystem::moved(size_t node, double pressure, double change) const {
     const HydraulicTable& table = tables_[static_cast<size_t>(soil_of_node_[node])];
     const double turn = table.switch_pressure();
+    if (pressure > 0 && pressure + change < 0) return 0.0;
     constexpr double straight = 1e-3;  // the curves are so over this share of the suction
     if (pressure >= turn && pressure + change >= turn) return pressure + change;
     if (std::abs(change) < straight * std::abs(pressure)) return pressure + change;
@@ -256,6 +279,14 @@ double FlowSystem::moved(size_t node, double pressure, double change) const {
     const double mobile = std::min(here.saturation, at_turn.saturation) - table.residual_saturation();
     const double least = table.residual_saturation() + (1.0 - largest_loss) * mobile;
     return table.pressure_of_saturation(std::max(target, least));
+}
+
+double FlowSystem::moved_steadily(size_t node, double pressure, double change) const {
+    const HydraulicTable& table = tables_[static_cast<size_t>(soil_of_node_[node])];
+    const HydraulicState here = table.at(pressure);
+    constexpr double largest_loss = 0.9;  // of what is above the potential of dry soil
+    const double least = here.potential - largest_loss * (here.potential - table.least_potential());
+    return table.pressure_of_potential(std::max(here.potential + here.permeability * change, least));
 }
 
 double FlowSystem::pore_stress(size_t soil, double pressure) const {

@@ -54,6 +54,8 @@ public:
     void evaluate(double t, std::span<const double> pressure);
     /// d(stored - step inflow)/dp at the last evaluate(); the rows of held nodes are the identity.
     void assemble(double step, SparseMatrix& matrix) const;
+    /// d(-inflow)/dp, likewise.
+    void assemble_steady(SparseMatrix& matrix) const;
 
     [[nodiscard]] int32_t node_count() const { return static_cast<int32_t>(stored_.size()); }
     [[nodiscard]] std::span<const double> stored() const { return stored_; }  ///< m3, ponds included
@@ -65,8 +67,13 @@ public:
     [[nodiscard]] std::span<const HydraulicState> state() const { return state_; }           ///< one a portion
     [[nodiscard]] bool is_held(size_t node) const { return held_node_[node] != 0; }
 
-    /// Carries a node's pressure by a Newton change, in pressure where it is wet and in saturation where it is dry.
+    /// Largest net inflow of a free node at the last evaluate(), relative to what passes through it or would under gravity alone.
+    [[nodiscard]] double imbalance() const;
+
+    /// Carries a node's pressure by a Newton change, in the variable whose curves are straight: the pressure where it is wet, the
+    /// saturation where it is dry; for a steady state, which stores nothing, the Kirchhoff potential.
     [[nodiscard]] double moved(size_t node, double pressure, double change) const;
+    [[nodiscard]] double moved_steadily(size_t node, double pressure, double change) const;
 
     [[nodiscard]] const HydraulicTable& table(size_t soil) const { return tables_[soil]; }
 
@@ -79,6 +86,7 @@ public:
     FlowBoundaries boundaries;
 
 private:
+    void assemble(double storage, double step, SparseMatrix& matrix) const;
     void evaluate_rigid(std::span<const double> pressure);
     void evaluate_deforming(double t, std::span<const double> pressure);
     void evaluate_links();

@@ -90,24 +90,34 @@ void HydraulicTable::find_switch() {
 }
 
 double HydraulicTable::pressure_of_saturation(double saturation) const {
-    // Saturation falls with the row: bisect the rows, then Newton within one cubic, kept between its ends.
-    if (saturation >= rows_.front().saturation) {
-        const double capacity = (maximum_ - rows_.front().saturation) / chord_;
-        return capacity > 0 ? std::min(0.0, (saturation - maximum_) / capacity) : -chord_;
-    }
-    const auto after =
-        std::partition_point(rows_.begin(), rows_.end(), [&](const Row& r) { return r.saturation > saturation; });
+    const Row& end = rows_.front();
+    if (saturation < end.saturation) return pressure_of_row_value(saturation, &Row::saturation, &Row::saturation_slope);
+    const double capacity = (maximum_ - end.saturation) / chord_;
+    return capacity > 0 ? std::min(0.0, (saturation - maximum_) / capacity) : -chord_;
+}
+
+double HydraulicTable::pressure_of_potential(double potential) const {
+    if (potential >= 0) return potential;
+    if (potential < rows_.front().potential) return pressure_of_row_value(potential, &Row::potential, &Row::potential_slope);
+    // On the chord potential = p (1 + slope p / 2).
+    const double slope = (1.0 - rows_.front().permeability) / chord_;
+    return 2.0 * potential / (1.0 + std::sqrt(std::max(0.0, 1.0 + 2.0 * slope * potential)));
+}
+
+// Row values fall with the suction: bisect the rows, then Newton within one cubic, kept between its ends.
+double HydraulicTable::pressure_of_row_value(double value, double Row::*field, double Row::*slope) const {
+    const auto after = std::partition_point(rows_.begin(), rows_.end(), [&](const Row& r) { return r.*field > value; });
     if (after == rows_.end()) return -suction_at(chord_, table_rows - 1);
     const auto row = static_cast<size_t>(after - rows_.begin()) - 1;
     const Row& a = rows_[row];
     const Row& b = rows_[row + 1];
     double low = 0;
     double high = 1;
-    double t = (a.saturation - saturation) / (a.saturation - b.saturation);
+    double t = (a.*field - value) / (a.*field - b.*field);
     for (int iteration = 0; iteration < 20; ++iteration) {
-        const Hermite s = hermite(a.saturation, b.saturation, a.saturation_slope, b.saturation_slope, t);
-        (s.value > saturation ? low : high) = t;
-        const double newton = t - (s.value - saturation) / s.slope;
+        const Hermite at = hermite(a.*field, b.*field, a.*slope, b.*slope, t);
+        (at.value > value ? low : high) = t;
+        const double newton = t - (at.value - value) / at.slope;
         const double next = (newton > low && newton < high) ? newton : 0.5 * (low + high);
         if (std::abs(next - t) < 1e-10) break;
         t = next;

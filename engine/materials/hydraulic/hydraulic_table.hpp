@@ -29,10 +29,16 @@ class HydraulicTable {
 public:
     explicit HydraulicTable(const Hydraulics& hydraulics);
 
+    /// At saturation itself (p = 0) the slopes are the unsaturated ones.
     [[nodiscard]] HydraulicState at(double pressure) const;
 
     /// The pressure below 0 with this saturation, between residual and maximum saturation (both excluded), Pa.
     [[nodiscard]] double pressure_of_saturation(double saturation) const;
+
+    /// The pressure with this Kirchhoff potential, Pa; the dry end of the table where no pressure has one so low.
+    [[nodiscard]] double pressure_of_potential(double potential) const;
+    /// The potential of soil without any water, Pa.
+    [[nodiscard]] double least_potential() const { return rows_.back().potential; }
 
     /// Where the unknown turns from pressure (wetter) to saturation (drier): the steepest point of the retention, Pa.
     [[nodiscard]] double switch_pressure() const { return switch_pressure_; }
@@ -48,6 +54,7 @@ private:
     void fill_curves(const Hydraulics& hydraulics);
     void fill_potential(const Hydraulics& hydraulics);
     void find_switch();
+    [[nodiscard]] double pressure_of_row_value(double value, double Row::*field, double Row::*slope) const;
     [[nodiscard]] HydraulicState wet(double pressure) const;
 
     double chord_;  ///< Pa
@@ -75,7 +82,7 @@ inline HydraulicState HydraulicTable::at(double pressure) const {
 }
 
 inline HydraulicState HydraulicTable::wet(double pressure) const {
-    if (pressure >= 0) return {maximum_, 0.0, 1.0, 0.0, pressure};
+    if (pressure > 0) return {maximum_, 0.0, 1.0, 0.0, pressure};
     const Row& end = rows_.front();
     const double capacity = (maximum_ - end.saturation) / chord_;
     const double slope = (1.0 - end.permeability) / chord_;
