@@ -107,6 +107,17 @@ void Simulation::set_flow_forcing(double duration) {
     }
 }
 
+// As it lies: what the flow's state is evaluated with between exchanges.
+void Simulation::hold_skeleton() const {
+    if (!equilibrium_) return;
+    const auto& portions = flow_->network.portions;
+    for (size_t i = 0; i < portions.size(); ++i) {
+        const double pressure = state_.flow.pressure[static_cast<size_t>(portions[i].node)];
+        flow_->skeleton.pore_volume[i] = {state_.flow_pore_volume[i], 0.0};
+        flow_->skeleton.expected_stress[i] = {flow_->pore_stress(static_cast<size_t>(portions[i].soil), pressure), 0.0};
+    }
+}
+
 // As it went on last: the expectation that the first iteration starts from.
 void Simulation::expect_skeleton(double duration) {
     if (!equilibrium_) return;

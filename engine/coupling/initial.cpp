@@ -177,6 +177,7 @@ void Simulation::set_initial_flow() {
     set_flow_forcing(1.0);
     for (size_t h = 0; h < flow_->boundaries.held.size(); ++h)
         flow.pressure[static_cast<size_t>(flow_->boundaries.held[h].node)] = flow_->forcing.held[h].start;
+    hold_skeleton();
     flow_->evaluate(0.0, flow.pressure);
     flow.stored.assign(flow_->stored().begin(), flow_->stored().end());
     for (const double water : flow.stored) initial_water_ += water;

@@ -69,6 +69,7 @@ void Simulation::restore(const GroundState& state) {
 }
 
 double Simulation::water_now() const {
+    hold_skeleton();
     flow_->evaluate(0.0, state_.flow.pressure);
     double sum = 0;
     for (const double water : flow_->stored()) sum += water;

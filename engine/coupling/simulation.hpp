@@ -85,6 +85,7 @@ private:
     Exchange exchange(double duration, const std::function<bool(double)>& cancelled);
     void lose_equilibrium();
     void set_flow_forcing(double duration);
+    void hold_skeleton() const;
     void expect_skeleton(double duration);
     void expect_skeleton_at(double duration, std::span<const double> volume, std::span<const double> stress);
     void compare_pore_volumes(const FlowState& flow);
