@@ -116,8 +116,8 @@ struct Orientation {
     double angle;
 };
 
-const std::array<Orientation, 9> orientations{
-    {{0, 0.0}, {0, 0.4}, {0, 2.0}, {1, 0.0}, {1, 0.7}, {1, -1.2}, {2, 0.0}, {2, 0.5}, {2, std::numbers::pi / 4}}};
+const std::array<Orientation, 6> orientations{
+    {{0, 0.0}, {0, 2.0}, {1, 0.7}, {1, -1.2}, {2, 0.5}, {2, std::numbers::pi / 4}}};
 
 // Principal values in the directions of an orientation, as (xx, yy, zz, xy).
 Vector4d oriented(const Vector3d& principal, const Orientation& orientation) {
@@ -165,7 +165,7 @@ const std::array<Soil, 8> soils{{{12e3, 30, 0, 5e3},
 
 template <class Check>
 void for_each_place(Check check) {
-    for (const double poisson_ratio : {0.0, 0.3, 0.49})
+    for (const double poisson_ratio : {0.2, 0.49})
         for (const Soil& s : soils)
             for (const Place& place : places(s.cohesion, s.friction_angle, s.dilation_angle, s.tensile_strength))
                 for (const Orientation& orientation : orientations) {
