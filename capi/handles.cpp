@@ -18,7 +18,7 @@ void require_handle(const void* handle, int64_t magic, const char* kind) {
         throw Error(Status::invalid_handle, std::string("the ") + kind + " is NULL");
     }
     if (!has_magic(handle, magic)) {
-        throw Error(Status::invalid_handle, std::string("the handle is not, or no longer, one of a ") + kind);
+        throw Error(Status::invalid_handle, std::string("this is not the handle of a living ") + kind);
     }
 }
 

@@ -9,7 +9,7 @@ namespace runner {
 Json report_json(const talus_step_report& report) {
     return {
         {"time", report.time},
-        {"regime", "quasi_static"},
+        {"regime", report.regime == TALUS_QUASI_STATIC ? "quasi_static" : "equilibrium_lost"},
         {"flow_substeps", report.flow_substeps},
         {"flow_failures", report.flow_failures},
         {"flow_iterations", report.flow_iterations},

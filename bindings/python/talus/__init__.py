@@ -16,9 +16,10 @@ from ._library import build_info, version
 from .engine import Engine
 from .errors import (Busy, Cancelled, Error, InputOutputError, InternalError, InvalidArgument, InvalidHandle, InvalidScene,
                      NotConverged, OutOfMemory, StaleView, UnknownName, ViewHeld)
+from .results import Results
 from .scene import Scene
 from .view import View
 
 __all__ = ["Busy", "Cancelled", "Engine", "Error", "InputOutputError", "InternalError", "InvalidArgument", "InvalidHandle",
-           "InvalidScene", "NotConverged", "OutOfMemory", "Scene", "StaleView", "UnknownName", "View", "ViewHeld",
+           "InvalidScene", "NotConverged", "OutOfMemory", "Results", "Scene", "StaleView", "UnknownName", "View", "ViewHeld",
            "build_info", "version"]

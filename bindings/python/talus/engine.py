@@ -13,6 +13,7 @@ from .view import View
 
 _RAIN_POLICIES = {"reject": _api.RAIN_REJECT, "hold": _api.RAIN_HOLD, "zero": _api.RAIN_ZERO}
 _EVENTS = ("SATURATED", "PONDING_STARTED", "PONDING_ENDED", "SEEPAGE_STARTED", "LOSS_OF_EQUILIBRIUM", "RAIN_ENDED")
+_REGIMES = ("QUASI_STATIC", "EQUILIBRIUM_LOST")
 _STEPS = ("OK", "CANCELLED", "OUT_OF_RAIN")
 
 
@@ -289,4 +290,4 @@ class Engine:
 
 
 def _report(structure):
-    return {**as_dict(structure), "regime": constant_name(("QUASI_STATIC",), structure.regime)}
+    return {**as_dict(structure), "regime": constant_name(_REGIMES, structure.regime)}

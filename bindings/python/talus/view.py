@@ -53,8 +53,9 @@ class View:
         memory.engine = self._engine._handle  # whoever holds the memory holds the engine
         return numpy.frombuffer(memoryview(memory).toreadonly(), numpy.uint8)
 
-    def __array__(self, dtype=None):
-        return self.array if dtype is None else self.array.astype(dtype, copy=False)
+    def __array__(self, dtype=None, copy=None):
+        array = self.array if dtype is None else self.array.astype(dtype, copy=False)
+        return array.copy() if copy else array
 
     def __getitem__(self, key):
         return self.array[key]

@@ -83,7 +83,8 @@ typedef int32_t talus_status;
 #define TALUS_CELL 2              /* cell, */
 #define TALUS_MESH 3              /* or rows of their own: how cells join nodes */
 
-#define TALUS_QUASI_STATIC 0      /* regime */
+#define TALUS_QUASI_STATIC 0      /* regime: the ground is in equilibrium; */
+#define TALUS_EQUILIBRIUM_LOST 1  /* failure was found: the skeleton stands as it was, the flow goes on */
 
 #define TALUS_SATURATED 1         /* kind of an event: the last pore of the ground filled */
 #define TALUS_PONDING_STARTED 2   /* water stands on the surface, or runs off */
@@ -148,7 +149,7 @@ typedef struct talus_field {
    rain = infiltrated + run_off;  stored - initial = infiltrated + inflow - seepage - drained + residual. */
 typedef struct talus_step_report {
     int32_t struct_size;
-    int32_t regime;                    /* TALUS_QUASI_STATIC */
+    int32_t regime;                    /* TALUS_QUASI_STATIC or TALUS_EQUILIBRIUM_LOST */
     double time;                       /* s, after the step */
     int64_t flow_substeps;             /* of this step */
     int64_t flow_failures;             /* substeps that were tried again, smaller */

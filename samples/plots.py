@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""Draws a run like the figures of the paper: profiles of a column, contours of a slope, histories, the water balance.
+
+Usage: samples/plots.py FOLDER, where FOLDER is that of `talus run --out FOLDER`. The plots go there.
+"""
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy
+from matplotlib.tri import Triangulation
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bindings/python"))
+from talus.results import Results
+
+HOUR = 3600
+plt.rcParams.update({"figure.dpi": 130, "font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False,
+                     "figure.constrained_layout.use": True})
+
+
+def time_text(seconds):
+    return f"{seconds:g} s" if seconds < 2 * HOUR else f"{seconds / HOUR:g} h"
+
+
+def time_axis(axes, longest):
+    """The unit of time for an axis, and its label."""
+    unit, name = (1, "s") if longest < 2 * HOUR else (HOUR, "h")
+    axes.set_xlabel(f"time, {name}")
+    return unit
+
+
+# --- a column: profiles ---
+
+def draw_profiles(run, figure):
+    pressure_axes, saturation_axes = figure.subplots(1, 2, sharey=True)
+    colours = plt.cm.viridis(numpy.linspace(0, 0.9, len(run.times)))
+    for time, colour in zip(run.times, colours):
+        fields = run.fields(time)
+        height = fields.nodes["position"][:, 1]
+        pressure_axes.plot(fields.nodes["pressure"] / 1e3, height, color=colour, label=time_text(time))
+        saturation_axes.plot(fields.points["saturation"], fields.points["position"][:, 1], color=colour)
+    pressure_axes.set(xlabel="pore pressure, kPa", ylabel="height, m")
+    pressure_axes.legend()
+    saturation_axes.set(xlabel="saturation")
+
+
+# --- a slope: contours ---
+
+def triangles(fields):
+    """The mesh as triangles, a quad as two."""
+    found = []
+    start = 0
+    for end in fields.ends:
+        corners = fields.corners[start:end]
+        found += [[corners[0], corners[i], corners[i + 1]] for i in range(1, len(corners) - 1)]
+        start = end
+    return found
+
+
+def draw_contours(run, figure):
+    fields = run.fields(run.times[-1])
+    position = fields.nodes["position"]
+    mesh = Triangulation(position[:, 0], position[:, 1], triangles(fields))
+    wanted = []
+    if "pressure" in fields.nodes:
+        pressure = fields.nodes["pressure"] / 1e3
+        wanted.append(("pore pressure, kPa", pressure, "viridis"))
+        wanted.append(("saturation", fields.at_nodes("saturation"), "Blues"))
+    if "displacement" in fields.nodes:
+        displacement = 1e3 * numpy.linalg.norm(fields.nodes["displacement"], axis=1)
+        wanted.append(("displacement, mm", displacement, "magma_r"))
+    rows = figure.subplots(len(wanted), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (title, values, colours) in zip(rows, wanted):
+        drawn = axes.tricontourf(mesh, values, levels=24, cmap=colours)
+        figure.colorbar(drawn, ax=axes)
+        if title.startswith("pore") and pressure.min() < 0 < pressure.max():
+            axes.tricontour(mesh, values, levels=[0], colors="white", linewidths=1)
+        for probe in run.report["engine"]["probes"]:
+            axes.plot(probe["x"], probe["y"], "k.", markersize=4)
+            axes.annotate(probe["name"], (probe["x"], probe["y"]), xytext=(3, 3), textcoords="offset points", fontsize=7)
+        axes.set(title=f"{title}, {time_text(fields.time)}", ylabel="y, m", aspect="equal")
+        axes.grid(False)
+    rows[-1].set_xlabel("x, m")
+
+
+# --- histories and water ---
+
+def displacement_size(run, probe):
+    parts = [run.probes[name] for name in (f"{probe}.displacement.x", f"{probe}.displacement.y") if name in run.probes]
+    return numpy.linalg.norm(parts, axis=0)
+
+
+def draw_histories(run, figure):
+    probes = [probe["name"] for probe in run.report["engine"]["probes"]]
+    has = {quantity: f"{probes[0]}.{quantity}" in run.probes for quantity in ("pressure", "saturation", "displacement.y")}
+    panels = [("pore pressure, kPa", lambda probe: run.probes[f"{probe}.pressure"] / 1e3)] * has["pressure"]
+    panels += [("saturation", lambda probe: run.probes[f"{probe}.saturation"])] * has["saturation"]
+    panels += [("displacement, mm", lambda probe: 1e3 * displacement_size(run, probe))] * has["displacement.y"]
+    rows = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
+    unit = time_axis(rows[-1], run.probes["time"][-1])
+    for axes, (title, values) in zip(rows, panels):
+        for probe in probes:
+            axes.plot(run.probes["time"] / unit, values(probe), label=probe)
+        axes.set_ylabel(title)
+    rows[0].legend(ncols=4)
+
+
+def draw_water(run, figure):
+    amounts, balance = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    time = run.steps("time")
+    unit = time_axis(balance, time[-1])
+    for name in ("rain", "infiltrated", "run_off", "seepage", "inflow", "drained"):
+        values = run.steps(f"water_{name}")
+        if values.any():
+            amounts.plot(time / unit, values, label=name.replace("_", "-"))
+    amounts.plot(time / unit, run.steps("water_stored") - run.steps("water_initial"), "k--", label="stored more")
+    amounts.set_ylabel("water, m³/m²" if run.report["engine"]["dimension"] == 1 else "water, m³/m")
+    amounts.legend()
+    rain = run.steps("water_rain").max() or 1
+    missed = numpy.abs(run.steps("water_residual")) / rain
+    balance.semilogy(time / unit, numpy.maximum(missed, 1e-17))
+    balance.set_ylabel("missed / rain")
+
+
+def draw(run, name, function, size):
+    figure = plt.figure(figsize=size)
+    function(run, figure)
+    figure.suptitle(run.report["engine"]["title"] if name != "water" else f"{run.report['engine']['name']}: water balance")
+    figure.savefig(run.folder / f"{name}.png")
+    plt.close(figure)
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    run = Results(sys.argv[1])
+    has_water = run.report["engine"]["physics"]["water"]
+    if run.times and run.report["engine"]["dimension"] == 1 and has_water:
+        draw(run, "profiles", draw_profiles, (7, 4.5))
+    if run.times and run.report["engine"]["dimension"] == 2:
+        draw(run, "contours", draw_contours, (7, 9))
+    if run.probes:
+        draw(run, "histories", draw_histories, (7, 7))
+    if has_water and run.report["steps"]:
+        draw(run, "water", draw_water, (7, 5))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
