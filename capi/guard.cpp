@@ -1,8 +1,8 @@
 #include "guard.hpp"
 
+#include <cxxabi.h>
 #include <algorithm>
 #include <cstring>
-#include <cxxabi.h>
 #include <new>
 
 namespace talus::capi {
@@ -60,9 +60,9 @@ void require(const void* pointer, const char* name) {
 void require_count(int64_t count, const char* name, int64_t least) {
     constexpr int64_t most = int64_t{1} << 48;
     if (count < least || count > most) {
-        throw Error(Status::invalid_argument,
-                    std::string(name) + " is " + std::to_string(count) + ", which must be at least " + std::to_string(least) +
-                        (count > most ? " and fit into memory" : ""));
+        throw Error(Status::invalid_argument, std::string(name) + " is " + std::to_string(count) +
+                                                  ", which must be at least " + std::to_string(least) +
+                                                  (count > most ? " and fit into memory" : ""));
     }
 }
 

@@ -2,8 +2,8 @@
 #include "guard.hpp"
 
 #include <capnp/common.h>
-#include <Eigen/Core>
 #include <sundials/sundials_config.h>
+#include <Eigen/Core>
 
 #define TALUS_TEXT_OF(value) #value
 #define TALUS_TEXT(value) TALUS_TEXT_OF(value)
@@ -21,11 +21,12 @@ const char* talus_version(void) { return TALUS_VERSION; }
 int32_t talus_abi(void) { return TALUS_ABI; }
 
 const char* talus_build_info(void) {
-    return "{\"version\": \"" TALUS_VERSION "\", \"abi\": " TALUS_TEXT(TALUS_ABI)
-           ", \"build\": \"" TALUS_BUILD "\", \"compiler\": \"" __VERSION__
-           "\", \"eigen\": \"" TALUS_TEXT(EIGEN_WORLD_VERSION) "." TALUS_TEXT(EIGEN_MAJOR_VERSION) "." TALUS_TEXT(EIGEN_MINOR_VERSION)
-           "\", \"sundials\": \"" SUNDIALS_VERSION "\", \"capnproto\": \"" TALUS_TEXT(CAPNP_VERSION_MAJOR) "." TALUS_TEXT(
-               CAPNP_VERSION_MINOR) "." TALUS_TEXT(CAPNP_VERSION_MICRO) "\"}";
+    return "{\"version\": \"" TALUS_VERSION "\", \"abi\": " TALUS_TEXT(
+        TALUS_ABI) ", \"build\": \"" TALUS_BUILD "\", \"compiler\": \"" __VERSION__
+                   "\", \"eigen\": \"" TALUS_TEXT(EIGEN_WORLD_VERSION) "." TALUS_TEXT(EIGEN_MAJOR_VERSION) "." TALUS_TEXT(
+                       EIGEN_MINOR_VERSION) "\", \"sundials\": \"" SUNDIALS_VERSION
+                                            "\", \"capnproto\": \"" TALUS_TEXT(CAPNP_VERSION_MAJOR) "." TALUS_TEXT(
+                                                CAPNP_VERSION_MINOR) "." TALUS_TEXT(CAPNP_VERSION_MICRO) "\"}";
 }
 
 const char* talus_status_name(talus_status status) {

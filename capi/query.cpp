@@ -40,7 +40,7 @@ void copy(const FieldView& view, double* values) {
 int32_t dimension(const Engine& run) { return run.scene().ground.kind == GroundKind::column ? 1 : 2; }
 
 talus_status sample(const Engine& run, const char* field, std::span<const double> places, double* values) {
-        const auto components = static_cast<size_t>(run.view(field).components);
+    const auto components = static_cast<size_t>(run.view(field).components);
     const size_t count = places.size() / static_cast<size_t>(dimension(run)) * components;
     return run.sample(field, places, {values, count}) ? TALUS_OK : TALUS_OUTSIDE;
 }
@@ -153,8 +153,8 @@ talus_status talus_engine_sample(talus_engine* engine, const char* field, int64_
     });
 }
 
-talus_status talus_engine_sample_raster(talus_engine* engine, const char* field, const talus_raster* raster, int64_t count,
-                                        double* values) {
+talus_status talus_engine_sample_raster(talus_engine* engine, const char* field, const talus_raster* raster,
+                                        int64_t count, double* values) {
     return on_engine(engine, [&](talus_engine& self) {
         require(field, "field");
         require(raster, "raster");

@@ -28,7 +28,8 @@ HostArray checked(const talus_array* given) {
     require(array.data, "array.data");
     if (array.type != TALUS_FLOAT64 && array.type != TALUS_INT32) {
         throw Error(Status::invalid_argument, std::string("array ") + array.entry + ": type is " +
-                                                  std::to_string(array.type) + ", which must be TALUS_FLOAT64 or TALUS_INT32");
+                                                  std::to_string(array.type) +
+                                                  ", which must be TALUS_FLOAT64 or TALUS_INT32");
     }
     HostArray host{array.entry, nullptr, nullptr, static_cast<size_t>(array.count)};
     if (array.type == TALUS_FLOAT64) {

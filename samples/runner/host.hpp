@@ -1,12 +1,12 @@
 // The C API with the manners of C++: handles that release themselves, failures as exceptions.
 #pragma once
 
+#include <talus/talus.h>
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
-#include <talus/talus.h>
 
 namespace runner {
 

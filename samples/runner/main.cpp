@@ -24,8 +24,9 @@ int check_scene(const std::string& path) {
 }
 
 int dispatch(int argc, char** argv) {
-    CLI::App app("Talus: rainfall-induced landslides. Exit status: 0 done, 1 the run failed, 2 wrong use or wrong scene, "
-                 "130 cancelled.");
+    CLI::App app(
+        "Talus: rainfall-induced landslides. Exit status: 0 done, 1 the run failed, 2 wrong use or wrong scene, "
+        "130 cancelled.");
     app.require_subcommand(1);
     app.set_version_flag("--version", std::string("talus ") + talus_version());
 

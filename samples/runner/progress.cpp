@@ -1,10 +1,10 @@
 #include "runner/progress.hpp"
 
+#include <unistd.h>
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
-#include <unistd.h>
 
 namespace runner {
 
@@ -72,7 +72,8 @@ void Progress::show(double time) {
     }
     constexpr int width = 24;
     const int full = std::clamp(static_cast<int>(width * time / duration_), 0, width);
-    const std::string bar = std::string(static_cast<size_t>(full), '#') + std::string(static_cast<size_t>(width - full), '.');
+    const std::string bar =
+        std::string(static_cast<size_t>(full), '#') + std::string(static_cast<size_t>(width - full), '.');
     std::fprintf(stderr, "\r\033[K[%s] %s", bar.c_str(), state(time).c_str());
     std::fflush(stderr);
     drawn_ = true;

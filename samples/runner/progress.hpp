@@ -1,9 +1,9 @@
 // How far a run is: a bar on a terminal, a line every tenth elsewhere.
 #pragma once
 
+#include <talus/talus.h>
 #include <chrono>
 #include <string>
-#include <talus/talus.h>
 
 namespace runner {
 

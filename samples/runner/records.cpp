@@ -38,13 +38,8 @@ Json report_json(const talus_step_report& report) {
 namespace {
 
 Json event_json(const talus_event& event) {
-    static constexpr std::array kinds = {"",
-                                         "saturated",
-                                         "ponding_started",
-                                         "ponding_ended",
-                                         "seepage_started",
-                                         "loss_of_equilibrium",
-                                         "rain_ended"};
+    static constexpr std::array kinds = {
+        "", "saturated", "ponding_started", "ponding_ended", "seepage_started", "loss_of_equilibrium", "rain_ended"};
     const auto kind = static_cast<size_t>(event.kind);
     return {
         {"kind", kind < kinds.size() ? kinds[kind] : "unknown"},

@@ -62,7 +62,8 @@ void append_array(std::string& text, const std::string& name, const char* type, 
                   int64_t components = 1) {
     text += std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
             std::to_string(components) + "\" NumberOfTuples=\"" +
-            std::to_string(static_cast<int64_t>(values.size()) / components) + "\"" + component_names(components) + " format=\"binary\">\n";
+            std::to_string(static_cast<int64_t>(values.size()) / components) + "\"" + component_names(components) +
+            " format=\"binary\">\n";
     append_data(text, values);
     text += "\n</DataArray>\n";
 }
@@ -88,7 +89,8 @@ Rows in_three_dimensions(const talus_field& field) {
     return rows;
 }
 
-void append_fields(std::string& text, const Engine& engine, const char* location, const std::vector<std::string>& names) {
+void append_fields(std::string& text, const Engine& engine, const char* location,
+                   const std::vector<std::string>& names) {
     text += std::string("<") + location + ">\n";
     for (const std::string& name : names) {
         const talus_field field = view(engine, name);
@@ -142,8 +144,8 @@ std::string vtu(const Engine& engine, const std::string& position, const Cells& 
         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
         "<UnstructuredGrid>\n<FieldData>\n";
     append_array(text, "TimeValue", "Float64", std::vector<double>{talus_engine_time(engine.get())});
-    text += "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(places.values.size() / 3) + "\" NumberOfCells=\"" +
-            std::to_string(cells.types.size()) + "\">\n";
+    text += "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(places.values.size() / 3) +
+            "\" NumberOfCells=\"" + std::to_string(cells.types.size()) + "\">\n";
     append_fields(text, engine, "PointData", point_data);
     append_fields(text, engine, "CellData", cell_data);
     text += "<Points>\n";

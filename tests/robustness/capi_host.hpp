@@ -2,11 +2,11 @@
 #pragma once
 
 #include <doctest/doctest.h>
+#include <talus/talus.h>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <string>
-#include <talus/talus.h>
 
 namespace host {
 

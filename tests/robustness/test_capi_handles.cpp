@@ -177,7 +177,8 @@ TEST_CASE("C API: a wrong scene is refused with all that is wrong with it") {
     CHECK(talus_scene_from_json("{\"soils\": [{\"name\": \"a\", \"porosity\": 40}], \"colour\": 1}", -1, &scene) ==
           TALUS_INVALID_SCENE);
     CHECK(host::contains(talus_last_error(), "colour"));
-    CHECK(talus_scene_from_json("{\"soils\": [{\"name\": \"a\", \"porosity\": 40}]}", -1, &scene) == TALUS_INVALID_SCENE);
+    CHECK(talus_scene_from_json("{\"soils\": [{\"name\": \"a\", \"porosity\": 40}]}", -1, &scene) ==
+          TALUS_INVALID_SCENE);
     CHECK(host::contains(talus_last_error(), "soils[0].porosity"));
     CHECK(host::contains(talus_last_error(), "ground"));
     CHECK(talus_scene_from_json("{", 1, &scene) == TALUS_INVALID_SCENE);

@@ -1,13 +1,13 @@
 // The host's process is its own: floating-point environment, locale, standard streams, threads.
 #include "capi_host.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <cfenv>
 #include <clocale>
 #include <cstdio>
-#include <fcntl.h>
 #include <locale>
 #include <thread>
-#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -93,7 +93,7 @@ TEST_CASE("C API: a host that traps floating-point exceptions is not trapped, an
     CHECK(traps == trapped);
     CHECK(rounding == FE_UPWARD);
     CHECK(raised == FE_INEXACT);
-    CHECK(hash == usual);  // and the host's rounding mode is not ours
+    CHECK(hash == usual);          // and the host's rounding mode is not ours
     CHECK(seen.traps == trapped);  // callbacks run in the host's environment
     CHECK(seen.rounding == FE_UPWARD);
 }
