@@ -3,7 +3,8 @@
 Eight-node quads with four integration points (no locking in isochoric plastic flow), plane strain. Net stress: total sigma =
 sigma_bar - max(p, 0) I, tension positive. Mohr-Coulomb on sigma_bar with c(s) = c + s S_e tan(phi), dilation 0, returned in
 principal stresses (plane, edges, apex) with the consistent tangent. Loads follow the hourly pressures, linear in between.
-Usage: mechanics.py SCENE TOP_LAYER LEAST_COLUMN SUBSTEPS FLOW.npz OUT.npz
+Elements are TOP_LAYER high in the upper 6 m and LEAST wide at crest and toe, where layers below the ground are as thin too.
+Usage: mechanics.py SCENE TOP_LAYER LEAST SUBSTEPS FLOW.npz OUT.npz
 """
 import sys
 import time
@@ -265,7 +266,8 @@ class Mechanics:
 def main():
     name, top, least, substeps, source, out = sys.argv[1], float(sys.argv[2]), float(sys.argv[3]), int(sys.argv[4]), *sys.argv[5:7]
     scene, data, started = Scene(name), np.load(source), time.time()
-    mechanics = Mechanics(scene, scene.columns(least, 4 * least), scene.layers(top, int(round(6 / top ** 0.5))))
+    mechanics = Mechanics(scene, scene.columns(least, 4 * top, 1.15 if least == top else 1.25),
+                          scene.layers(top, int(round(6 / top ** 0.5)), least))
     print(f"{name}: {mechanics.elements.shape[0]} elements, {mechanics.free.size} unknowns", flush=True)
     x, y = mechanics.points.T
     places = np.stack([x, scene.z(x, y)], axis=1)

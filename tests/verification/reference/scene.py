@@ -46,9 +46,11 @@ class Scene:
             lines.update(np.interp(np.linspace(0, count[-1], cells + 1), count, fine).tolist())
         return np.array(sorted(lines))
 
-    def layers(self, top, below):
-        """Lines z: `top` high down to TOP, then a geometric growth to about `below` of the rest; y = 8 m is on a line at both sides."""
+    def layers(self, top, below, first=None):
+        """Lines z: `top` high down to TOP (halved towards the ground until below `first`), then growing; y = 8 m is on a line at both sides."""
         upper = np.linspace(0, TOP, int(round(TOP / top)) + 1)
+        while first and upper[1] > 1.01 * first:
+            upper = np.insert(upper, 1, 0.5 * upper[1])
         left = TOP + 2 / 3  # y = 8 m at x = 0
         ratio = np.linspace(0, 1, below + 1)
         first = TOP + (left - TOP) * ratio ** 1.7
