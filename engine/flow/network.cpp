@@ -16,8 +16,6 @@ double contract(const Vector& a, const Tensor& k, const Vector& b) {
     return a[0] * (k.xx * b[0] + k.xy * b[1]) + a[1] * (k.xy * b[0] + k.yy * b[1]);
 }
 
-constexpr int pair_count(int corners) { return corners * (corners - 1) / 2; }
-
 // Number of the pair (i, j), i != j, among the pairs of `corners` corners in lexicographic order.
 constexpr int pair_number(int corners, int i, int j) {
     const int low = std::min(i, j);
@@ -30,12 +28,13 @@ struct CellGeometry {
     double volume = 0;
     std::array<double, 4> corner_volume{};
     std::array<double, 6> conductance{};  ///< per pair, integral of -grad N_i . K grad N_j, m2/s (a column: m/s)
+    std::array<double, 6> fall{};         ///< per pair (i < j), flow i -> j under gravity alone, m2/s (a column: m/s)
 };
 
 CellGeometry line_geometry(const Mesh& mesh, const int32_t* nodes, const Tensor& k) {
-    const double length =
-        std::abs(mesh.position[static_cast<size_t>(nodes[1])] - mesh.position[static_cast<size_t>(nodes[0])]);
-    return {2, length, {0.5 * length, 0.5 * length}, {k.yy / length}};
+    const double rise = mesh.position[static_cast<size_t>(nodes[1])] - mesh.position[static_cast<size_t>(nodes[0])];
+    const double length = std::abs(rise);
+    return {2, length, {0.5 * length, 0.5 * length}, {k.yy / length}, {rise > 0 ? -k.yy : k.yy}};
 }
 
 // Quadrature at corner c, whose edges to the next and the previous corner span the local frame: there grad N_next and grad N_prev are the
@@ -49,9 +48,14 @@ void add_corner(CellGeometry& cell, int c, const Vector& to_next, const Vector& 
     const int next = (c + 1) % cell.corners;
     const int previous = (c + cell.corners - 1) % cell.corners;
     const double weight = share * det;
-    const auto add = [&](int i, int j, double value) {
-        cell.conductance[static_cast<size_t>(pair_number(cell.corners, i, j))] -= weight * value;
+    const auto pair = [&](int i, int j) { return static_cast<size_t>(pair_number(cell.corners, i, j)); };
+    const auto add = [&](int i, int j, double value) { cell.conductance[pair(i, j)] -= weight * value; };
+    const auto add_fall = [&](int to, const Vector& gradient) {  // from c, along the edge whose dual vector this is
+        const double flow = -weight * (gradient[0] * k.xy + gradient[1] * k.yy);
+        cell.fall[pair(c, to)] += c < to ? flow : -flow;
     };
+    add_fall(next, grad_next);
+    add_fall(previous, grad_previous);
     add(c, next, contract(grad_here, k, grad_next));
     add(c, previous, contract(grad_here, k, grad_previous));
     add(next, previous, contract(grad_next, k, grad_previous));
@@ -74,7 +78,7 @@ CellGeometry plane_geometry(const Mesh& mesh, const int32_t* nodes, int corners,
         const Vector b = edge(0, 2);
         cell.volume = 0.5 * (a[0] * b[1] - a[1] * b[0]);
         cell.corner_volume.fill(cell.volume / 3.0);
-        add_corner(cell, 0, a, b, 0.5, k);
+        for (int c = 0; c < 3; ++c) add_corner(cell, c, edge(c, c + 1), edge(c, c + 2), 0.5 / 3.0, k);
         return cell;
     }
     // The Jacobian determinant is linear over the quad, hence integral(N_i det) = sum_c det_c {1/9, 1/18, 1/36} by how far c lies from i.
@@ -178,7 +182,7 @@ void refresh_geometry(Network& network, const Mesh& mesh, const Scene& scene,
     network.corner_volume.assign(network.corner_portion.size(), 0.0);
     network.transmissibility.assign(network.links.size(), 0.0);
     network.joined_volume.assign(network.links.size(), 0.0);
-    network.weight_drop.resize(network.links.size());
+    network.fall.assign(network.links.size(), 0.0);
     for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
         const auto index = static_cast<size_t>(cell);
         const CellGeometry geometry = cell_geometry(mesh, cell, tensors[static_cast<size_t>(mesh.cell_soil[index])]);
@@ -186,21 +190,20 @@ void refresh_geometry(Network& network, const Mesh& mesh, const Scene& scene,
         const auto first = static_cast<size_t>(mesh.cell_start[index]);
         for (size_t c = 0; c < static_cast<size_t>(geometry.corners); ++c)
             network.corner_volume[first + c] = geometry.corner_volume[c];
-        for (int pair = 0; pair < pair_count(geometry.corners); ++pair) {
-            const int32_t link = network.pair_link[static_cast<size_t>(network.pair_start[index] + pair)];
-            if (link < 0) continue;
-            network.transmissibility[static_cast<size_t>(link)] +=
-                factor * geometry.conductance[static_cast<size_t>(pair)];
-            network.joined_volume[static_cast<size_t>(link)] += geometry.volume / (geometry.corners * geometry.corners);
+        int pair = 0;
+        for (int i = 0; i < geometry.corners; ++i) {
+            for (int j = i + 1; j < geometry.corners; ++j, ++pair) {
+                const int32_t number = network.pair_link[static_cast<size_t>(network.pair_start[index] + pair)];
+                if (number < 0) continue;
+                const auto link = static_cast<size_t>(number);
+                const bool forward = network.corner_portion[first + static_cast<size_t>(i)] == network.links[link].portion_a;
+                const double fall = factor * unit_weight * geometry.fall[static_cast<size_t>(pair)];
+                network.transmissibility[link] += factor * geometry.conductance[static_cast<size_t>(pair)];
+                network.fall[link] += forward ? fall : -fall;
+                network.joined_volume[link] += geometry.volume / (geometry.corners * geometry.corners);
+            }
         }
     }
-    const auto height = [&](int32_t portion) {
-        const int32_t node = network.portions[static_cast<size_t>(portion)].node;
-        return mesh.position[static_cast<size_t>(node * mesh.dimension + mesh.dimension - 1)];
-    };
-    for (size_t l = 0; l < network.links.size(); ++l)
-        network.weight_drop[l] =
-            unit_weight * (height(network.links[l].portion_b) - height(network.links[l].portion_a));
 }
 
 }  // namespace talus

@@ -39,7 +39,7 @@ struct Network {
     std::vector<double>
         corner_volume;  ///< like corner_portion: m3 of ground (per metre of thickness, or per m2 in a column)
     std::vector<double> transmissibility;  ///< per link, m3/(s Pa)
-    std::vector<double> weight_drop;       ///< per link, rho g (y_b - y_a), Pa
+    std::vector<double> fall;              ///< per link, flow a -> b under gravity alone at k_r = 1, m3/s
     std::vector<double>
         joined_volume;  ///< per link, sum over its cells of volume / corners^2, m3: weight of the pressure projection
 };

@@ -7,20 +7,45 @@
 namespace talus {
 namespace {
 
+// Share of the fall that takes k_r below, exact where ln k_r is linear between the two (Scharfetter & Gummel 1969): 1/2 where diffusion
+// rules, 0 where gravity does.
+struct Share {
+    double value;
+    double slope;  ///< by the Peclet number
+};
+
+Share share_below(double peclet) {
+    if (peclet < 1e-2) return {0.5 - peclet / 12.0, -1.0 / 12.0};
+    if (peclet > 500.0) return {1.0 / peclet, -1.0 / (peclet * peclet)};
+    const double grown = std::expm1(peclet);
+    return {1.0 / peclet - 1.0 / grown, (1.0 + grown) / (grown * grown) - 1.0 / (peclet * peclet)};
+}
+
 struct LinkFlow {
-    double flow;     ///< a -> b per transmissibility, Pa
+    double flow;     ///< a -> b, m3/s
     double slope_a;  ///< d(flow)/dp_a
     double slope_b;
 };
 
-// Flow from a to b: the difference of the potentials, exact for steady flow without gravity, and the weight of the water between them,
-// G = rho g (y_b - y_a), times k_r upstream of it. Monotone in both pressures; the error of the upstream k_r is a share G / 2 of its
-// change across the link, small beside the potential's where cells are fine.
-LinkFlow link_flow(const HydraulicState& a, const HydraulicState& b, double weight_drop, bool falls_to_a) {
-    const HydraulicState& above = falls_to_a ? b : a;
-    const double weight_slope = weight_drop * above.permeability_slope;
-    return {a.potential - b.potential - weight_drop * above.permeability, a.permeability - (falls_to_a ? 0.0 : weight_slope),
-            -b.permeability - (falls_to_a ? weight_slope : 0.0)};
+// Flow from a to b: the difference of the potentials, exact for steady flow without gravity, and what falls, times a mean k_r of above and
+// below. The share of below is that of an exponential k_r as steep as the one below, so that the flow never grows with the pressure it
+// flows to: second order, and monotone. It ends with suction, where Mualem's k_r is steeper than any cell can tell.
+LinkFlow link_flow(const HydraulicState& a, const HydraulicState& b, double transmissibility, double fall) {
+    const bool falls_to_b = fall > 0;
+    const HydraulicState& above = falls_to_b ? a : b;
+    const HydraulicState& below = falls_to_b ? b : a;
+    const double weight = transmissibility > 0 ? std::abs(fall) / transmissibility : 0.0;  // Pa, of the water between them
+    const Share share = share_below(weight * below.steepness);
+    const double part = transmissibility > 0 ? share.value * below.dryness : 0.0;
+    const double part_slope = transmissibility > 0 ? share.slope * weight * below.steepness_slope * below.dryness +
+                                                         share.value * below.dryness_slope
+                                                   : 0.0;
+    const double mean = above.permeability + part * (below.permeability - above.permeability);
+    const double slope_above = fall * (1.0 - part) * above.permeability_slope;
+    const double slope_below = fall * (part * below.permeability_slope + part_slope * (below.permeability - above.permeability));
+    return {transmissibility * (a.potential - b.potential) + fall * mean,
+            transmissibility * a.permeability + (falls_to_b ? slope_above : slope_below),
+            -transmissibility * b.permeability + (falls_to_b ? slope_below : slope_above)};
 }
 
 }  // namespace
@@ -135,12 +160,10 @@ void FlowSystem::evaluate_links() {
     for (size_t l = 0; l < network.links.size(); ++l) {
         const auto a = static_cast<size_t>(network.links[l].portion_a);
         const auto b = static_cast<size_t>(network.links[l].portion_b);
-        const double transmissibility = network.transmissibility[l];
-        const LinkFlow link =
-            link_flow(state_[a], state_[b], network.weight_drop[l], network.weight_drop[l] * transmissibility > 0);
-        inflow_[static_cast<size_t>(network.portions[a].node)] -= transmissibility * link.flow;
-        inflow_[static_cast<size_t>(network.portions[b].node)] += transmissibility * link.flow;
-        link_slope_[l] = {transmissibility * link.slope_a, transmissibility * link.slope_b};
+        const LinkFlow link = link_flow(state_[a], state_[b], network.transmissibility[l], network.fall[l]);
+        inflow_[static_cast<size_t>(network.portions[a].node)] -= link.flow;
+        inflow_[static_cast<size_t>(network.portions[b].node)] += link.flow;
+        link_slope_[l] = {link.slope_a, link.slope_b};
     }
 }
 
@@ -219,10 +242,10 @@ double FlowSystem::imbalance() const {
     for (size_t l = 0; l < network.links.size(); ++l) {
         const auto a = static_cast<size_t>(network.links[l].portion_a);
         const auto b = static_cast<size_t>(network.links[l].portion_b);
-        const double driven = std::abs(state_[b].potential - state_[a].potential);
-        const double falling = std::abs(network.weight_drop[l]) * std::max(state_[a].permeability, state_[b].permeability);
+        const double driven = std::abs(network.transmissibility[l] * (state_[b].potential - state_[a].potential));
+        const double falling = std::abs(network.fall[l]) * std::max(state_[a].permeability, state_[b].permeability);
         for (const size_t end : {a, b})
-            passing[static_cast<size_t>(network.portions[end].node)] += std::abs(network.transmissibility[l]) * (driven + falling);
+            passing[static_cast<size_t>(network.portions[end].node)] += driven + falling;
     }
     double largest = 0;
     for (size_t i = 0; i < passing.size(); ++i)
