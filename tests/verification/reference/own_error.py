@@ -5,18 +5,12 @@ Usage: own_error.py SCENE LABEL FLOW_A.npz FLOW_B.npz   or   own_error.py SCENE 
 import sys
 import numpy as np
 import soil
-from scene import Scene
+from scene import Scene, ground_displacement
 
 
 def hourly_probes(flow):
     hours = np.arange(flow["pressure"].shape[0])
     return flow["probes"][[np.argmin(np.abs(flow["times"] - 3600 * hour)) for hour in hours]]
-
-
-def marker(mechanics, scene, name):
-    x, y = scene.markers[name]
-    i, j = np.argmin(np.abs(mechanics["node_x"] - x)), np.argmin(np.abs(mechanics["node_z"] - scene.z(x, y)))
-    return mechanics["displacement"][:, :, i, j]
 
 
 def main():
@@ -28,8 +22,8 @@ def main():
             rows.append(("pressure", name, "Pa", np.abs(a - b)[:, k].max()))
             rows.append(("saturation", name, "1", np.abs(soil.saturation(a) - soil.saturation(b))[:, k].max()))
     else:
-        for name in scene.markers:
-            difference = 1e3 * (marker(first, scene, name) - marker(second, scene, name))
+        for name, (x, _) in scene.markers.items():
+            difference = 1e3 * (ground_displacement(first, x) - ground_displacement(second, x))
             rows += [(f"u{axis}", name, "mm", np.abs(difference)[:, k].max()) for k, axis in enumerate("xy")]
     for row in rows:
         print(f"{scene.name},{label},{row[0]},{row[1]},{row[2]},{row[3]:.3g}")

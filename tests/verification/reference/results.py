@@ -6,7 +6,7 @@ import sys
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 import soil
-from scene import Scene, raster
+from scene import Scene, ground_displacement, raster
 
 
 def histories(scene, flow, mechanics):
@@ -18,11 +18,9 @@ def histories(scene, flow, mechanics):
     for name, values in zip(names, pressure.T):
         header += [f"pressure_{name}_Pa", f"saturation_{name}"]
         columns += [values, soil.saturation(values)]
-    for name, (x, y) in scene.markers.items():
-        i = np.argmin(np.abs(mechanics["node_x"] - x))
-        j = np.argmin(np.abs(mechanics["node_z"] - scene.z(x, y)))
+    for name, (x, _) in scene.markers.items():
         header += [f"ux_{name}_m", f"uy_{name}_m"]
-        columns += list(mechanics["displacement"][:, :, i, j].T)
+        columns += list(ground_displacement(mechanics, x).T)
     return header, np.stack(columns, axis=1)
 
 

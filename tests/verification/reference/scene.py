@@ -20,7 +20,7 @@ class Scene:
         self.right = self.toe + 20.0
         middle = 0.5 * (20.0 + self.toe)
         self.probes = {"A": (18.0, 28.0), "B": (middle, 18.0), "C": (self.toe + 2.0, 8.5), "below_crest": (20.0, 29.5)}
-        self.markers = {"crest": (20.0, 30.0), "face": (middle, 20.0), "toe": (self.toe, 10.0)}
+        self.markers = {"crest": (20.0, 30.0), "face": (middle, 20.0), "toe": (self.toe, 10.0), "beside_toe": (self.toe + 1.0, 10.0)}
 
     def height(self, x):
         return np.interp(x, [20.0, self.toe], [30.0, 10.0])
@@ -56,6 +56,12 @@ class Scene:
         first = TOP + (left - TOP) * ratio ** 1.7
         second = np.linspace(left, TOP + 1, max(1, below // 3) + 1)
         return np.concatenate([upper, first[1:], second[1:]])
+
+
+def ground_displacement(mechanics, x):
+    """(hours, 2) of the ground at x, from the output of mechanics.py."""
+    ground = mechanics["displacement"][:, :, :, 0]
+    return np.stack([[np.interp(x, mechanics["node_x"], row) for row in hour] for hour in ground])
 
 
 def raster(scene, spacing=0.5):
