@@ -1,0 +1,42 @@
+"""What every verification case shares: reading references, running scenes with a clock, making rows."""
+
+import csv
+import pathlib
+import time
+
+import numpy
+import talus
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+SCENES = ROOT / "samples" / "scenes"
+REFERENCES = ROOT / "tests" / "verification" / "reference"
+
+
+class Clock:
+    """Wall and CPU seconds of the block it is used in."""
+
+    def __enter__(self):
+        self._start = time.perf_counter(), time.process_time()
+        return self
+
+    def __exit__(self, *exception):
+        self.wall = time.perf_counter() - self._start[0]
+        self.cpu = time.process_time() - self._start[1]
+
+
+def read_csv(name):
+    """Columns of a reference by their heading, as arrays."""
+    with open(REFERENCES / name, newline="") as file:
+        lines = list(csv.reader(file))
+    values = numpy.array(lines[1:], dtype=float)
+    return dict(zip(lines[0], values.T))
+
+
+def engine_of(name):
+    return talus.Engine(talus.Scene.from_file(str(SCENES / f"{name}.json")))
+
+
+def row(case, quantity, norm, error, bound, unit, reference, clock):
+    """One row; met when the error is a number not above the bound."""
+    return {"case": case, "quantity": quantity, "norm": norm, "error": float(error), "bound": bound, "unit": unit,
+            "reference": reference, "wall_s": clock.wall, "cpu_s": clock.cpu, "threads": 1, "met": bool(error <= bound)}
