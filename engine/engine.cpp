@@ -122,7 +122,7 @@ const std::string& Engine::describe() const { return state_->description; }
 int32_t Engine::zone(std::string_view name) const {
     const auto& zones = state_->scene->surface.zones;
     const auto found = std::find_if(zones.begin(), zones.end(), [&](const RainZone& zone) { return zone.name == name; });
-    if (found == zones.end()) throw Error(Status::invalid_argument, "no rain zone is named '" + std::string(name) + "'");
+    if (found == zones.end()) throw Error(Status::unknown_field, "no rain zone is named '" + std::string(name) + "'");
     return static_cast<int32_t>(found - zones.begin());
 }
 
@@ -146,7 +146,7 @@ void Engine::set_rain(int32_t zone, double rate) {
 int32_t Engine::boundary(std::string_view name) const {
     const auto& boundaries = state_->scene->boundaries;
     const auto found = std::find_if(boundaries.begin(), boundaries.end(), [&](const Boundary& boundary) { return boundary.name == name; });
-    if (found == boundaries.end()) throw Error(Status::invalid_argument, "no boundary is named '" + std::string(name) + "'");
+    if (found == boundaries.end()) throw Error(Status::unknown_field, "no boundary is named '" + std::string(name) + "'");
     return static_cast<int32_t>(found - boundaries.begin());
 }
 
@@ -296,7 +296,7 @@ bool Engine::sample(std::string_view field, std::span<const double> places, std:
 
 int32_t Engine::probe(std::string_view name) const {
     const auto found = std::find_if(state_->probes.begin(), state_->probes.end(), [&](const ProbeTrack& probe) { return probe.name == name; });
-    if (found == state_->probes.end()) throw Error(Status::invalid_argument, "no probe is named '" + std::string(name) + "'");
+    if (found == state_->probes.end()) throw Error(Status::unknown_field, "no probe is named '" + std::string(name) + "'");
     return static_cast<int32_t>(found - state_->probes.begin());
 }
 
