@@ -17,8 +17,9 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
       stiffness_(kinematics_, equations_, mesh.dimension),
       acceleration_(equations_.freedom.size()) {
     const size_t freedoms = mesh.position.size();
-    for (auto* field : {&displacement_, &increment_, &reaction_, &external_, &internal_, &best_}) field->assign(freedoms, 0.0);
+    for (auto* field : {&displacement_, &increment_, &reaction_, &external_, &internal_, &start_}) field->assign(freedoms, 0.0);
     for (auto* field : {&residual_, &direction_, &last_direction_}) field->assign(equations_.freedom.size(), 0.0);
+    if (equations_.count() == 0) return;  // every displacement is given: nothing to solve for
     for (Factor* factor : {&elastic_, &tangent_}) {
         factor->matrix = stiffness_.matrix();
         factor->solver = std::make_unique<KluSolver>(factor->matrix);
@@ -41,7 +42,7 @@ EquilibriumOutcome Equilibrium::solve(const Loads& loads) {
             predict(worth_predicting, outcome);
             unbalance();
         }
-        if (!accelerate(outcome) && !newton(outcome)) creep(outcome);
+        if (!accelerate(outcome)) creep(outcome);
     }
     finish(outcome);
     return outcome;
@@ -139,7 +140,7 @@ void Equilibrium::update_geometry() {
     constexpr double much = 0.05;
     kinematics_.update(mesh_, points_);
     const bool is_deformed = largest_displacement_gradient() > much;
-    if (!is_deformed && !was_deformed_) return;
+    if (equations_.count() == 0 || (!is_deformed && !was_deformed_)) return;
     if (is_deformed) {
         stiffness_.assemble_elastic(points_, skeleton_, elastic_.matrix);
     } else {

@@ -98,9 +98,9 @@ private:
     double relative_residual();
     void predict(double wanted, EquilibriumOutcome& outcome);
     bool accelerate(EquilibriumOutcome& outcome);
-    bool newton(EquilibriumOutcome& outcome);
-    bool line_search(double& unbalanced);
     bool creep(EquilibriumOutcome& outcome);
+    double follow_direction();
+    void find_mechanism(CollapseEvidence& evidence);
     double elastic_displacement(EquilibriumOutcome& outcome);
     bool watch(CollapseWatch& watch, std::span<const double> last_direction) const;
     bool factorise_tangent(double viscosity, EquilibriumOutcome& outcome);
@@ -120,7 +120,7 @@ private:
     bool is_at_start_ = true;                   // no increment to start from
 
     std::vector<double> displacement_, increment_, reaction_;      // nodes x dimension
-    std::vector<double> external_, internal_, best_;               // nodes x dimension
+    std::vector<double> external_, internal_, start_;              // nodes x dimension
     std::vector<double> residual_, direction_, last_direction_;    // equations
     Anderson acceleration_;
     int32_t yielding_ = 0;

@@ -1,6 +1,10 @@
-// How the equilibrium is found: an elastic predictor, then the elastic stiffness as a fixed preconditioner with acceleration, then
-// Newton with the consistent tangent and a line search, then creep in pseudo-time, which either arrives or proves that there is
-// nowhere to arrive. Each is only tried when the one before it did not settle the matter.
+// How the equilibrium is found: an elastic predictor; then iterations with the elastic stiffness, accelerated, which suffice while
+// the yielding ground is held by ground that does not yield; then creep in pseudo-time with the consistent tangent, which ends in
+// Newton's method where there is a balance, and otherwise proves that there is none.
+//
+// Plain Newton with a search on the norm of the unbalanced force is left out: near a factor of one it stops in local minima, cycles
+// between the planes of the yield surface, and where dilation differs from friction (equilibria need not be unique then) it may jump
+// to another equilibrium than the one that the ground comes to.
 #include "motion/equilibrium.hpp"
 
 #include <algorithm>
@@ -61,105 +65,94 @@ void Equilibrium::predict(double wanted, EquilibriumOutcome& outcome) {
     }
 }
 
-/// Iterates with the elastic stiffness. Leaves the best iterate, and gives up, when it has not improved enough for a while.
+/// Iterates with the elastic stiffness. False, and back at the start, where the unbalanced force has not halved for a while.
 bool Equilibrium::accelerate(EquilibriumOutcome& outcome) {
     constexpr int32_t patience = 10;
-    constexpr double improvement = 0.5;
-    double unbalanced = norm(residual_), least = unbalanced, milestone = unbalanced;
-    best_ = increment_;
+    double milestone = norm(residual_);
+    start_ = increment_;
     acceleration_.restart();
-    for (int32_t k = 0, since = 0; since < patience; ++k, ++since) {
+    for (int32_t since = 0; since < patience; ++since) {
         if (relative_residual() <= tolerance) return true;
         solve_for_direction(elastic_, outcome);
         acceleration_.accelerate(direction_);
         step_along(1);
-        unbalanced = unbalance();
-        if (unbalanced < least) {
-            least = unbalanced;
-            best_ = increment_;
-        }
-        if (unbalanced < improvement * milestone) {
+        const double unbalanced = unbalance();
+        if (unbalanced < milestone / 2) {
             milestone = unbalanced;
             since = 0;
         }
     }
-    increment_ = best_;
+    if (relative_residual() <= tolerance) return true;
+    increment_ = start_;
     unbalance();
-    return relative_residual() <= tolerance;
-}
-
-bool Equilibrium::newton(EquilibriumOutcome& outcome) {
-    constexpr int32_t most_iterations = 20;
-    double unbalanced = norm(residual_);
-    for (int32_t k = 0; k < most_iterations; ++k) {
-        if (relative_residual() <= tolerance) return true;
-        if (!factorise_tangent(0, outcome)) return false;
-        solve_for_direction(tangent_, outcome);
-        if (!line_search(unbalanced)) return false;
-    }
-    return relative_residual() <= tolerance;
-}
-
-/// Goes along the direction as far as the unbalanced force falls enough; false, and back at the start, where it does not.
-bool Equilibrium::line_search(double& unbalanced) {
-    constexpr double shortest = 1.0 / 8;
-    constexpr double enough = 0.1;
-    best_ = increment_;
-    const double before = unbalanced;
-    for (double length = 1; length >= shortest; length /= 2) {
-        increment_ = best_;
-        step_along(length);
-        unbalanced = unbalance();
-        if (unbalanced < (1 - enough * length) * before) return true;
-    }
-    increment_ = best_;
-    unbalanced = unbalance();
     return false;
 }
 
 /// Implicit steps of a skeleton with viscosity, viscosity * elastic stiffness * velocity: each solves
 /// (tangent + viscosity * elastic stiffness) step = unbalanced force. The viscosity falls with the unbalanced force, which ends in
-/// Newton's method where a balance exists (pseudo-transient continuation; Kelley & Keyes, SIAM J. Numer. Anal. 35, 1998), and
-/// ends in the steady motion of a mechanism where there is none.
+/// Newton's method where a balance exists (pseudo-transient continuation; Kelley & Keyes, SIAM J. Numer. Anal. 35, 1998), and in
+/// the steady motion of a mechanism where there is none. True: arrived.
 bool Equilibrium::creep(EquilibriumOutcome& outcome) {
     constexpr int32_t most_steps = 200;
-    constexpr double first_viscosity = 0.1, largest_viscosity = 1e3;
-    constexpr double most_growth = 2;  // of the unbalanced force over a step that counts
+    constexpr double first_viscosity = 0.01, largest_viscosity = 1e3;
+    constexpr double smallest_ratio = 0.1, steady_ratio = 0.8;
     CollapseWatch collapse(elastic_displacement(outcome));
-    double unbalanced = unbalance();
     double viscosity = first_viscosity;
+    double unbalanced = norm(residual_);
     std::fill(last_direction_.begin(), last_direction_.end(), 0.0);
     for (int32_t k = 0; k < most_steps && viscosity < largest_viscosity; ++k) {
         if (relative_residual() <= tolerance) return true;
-        if (!factorise_tangent(viscosity, outcome)) {
+        double length = 0;
+        if (factorise_tangent(viscosity, outcome)) {
+            solve_for_direction(tangent_, outcome);
+            ++outcome.pseudo_steps;
+            length = follow_direction();
+        }
+        if (length == 0) {
             viscosity *= 4;
             continue;
         }
-        best_ = increment_;
-        solve_for_direction(tangent_, outcome);
-        ++outcome.pseudo_steps;
-        step_along(1);
-        const double after = unbalance();
-        if (!(after <= most_growth * unbalanced)) {
-            increment_ = best_;
-            unbalance();
-            viscosity *= 4;
-            continue;
-        }
-        const bool proved = watch(collapse, last_direction_);
+        const double ratio = std::clamp(norm(residual_) / unbalanced, smallest_ratio, 1.0);
+        unbalanced = norm(residual_);
+        viscosity *= length < 1 ? 2 : steady_ratio * ratio;
+        const bool is_proved = watch(collapse, last_direction_);
         outcome.collapse = collapse.evidence();
-        if (proved) {
+        if (is_proved) {
             outcome.status = EquilibriumStatus::no_equilibrium;
-            std::fill(best_.begin(), best_.end(), 0.0);
-            for (size_t i = 0; i < direction_.size(); ++i) best_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
-            locate_mechanism(kinematics_, points_, best_, outcome.collapse);
+            find_mechanism(outcome.collapse);
             return false;
         }
-        viscosity *= 0.8 * std::clamp(after / unbalanced, 0.1, 1.0);
-        unbalanced = after;
         last_direction_ = direction_;
     }
     return relative_residual() <= tolerance;
+}
+
+/// Goes along the direction, which is cut to the part gone, until the unbalanced force does hardly less work on it than at the start
+/// with the sign turned, or more: farther, the linear step would leave the path of the creeping ground. Returns the part gone; 0, and
+/// back at the start, where the direction is none that the unbalanced force drives.
+double Equilibrium::follow_direction() {
+    constexpr double most_overshoot = 0.5, most_growth = 1.1;
+    constexpr int32_t most_cuts = 6;
+    const double power = dot(residual_, direction_);
+    if (!(power > 0)) return 0;
+    start_ = increment_;
+    double length = 1;
+    for (int32_t k = 0;; ++k) {
+        increment_ = start_;
+        step_along(length);
+        unbalance();
+        const double left = dot(residual_, direction_) / power;
+        if (k == most_cuts || (left >= -most_overshoot && left <= most_growth)) break;
+        length *= left > 0 ? 0.5 : std::clamp(1 / (1 - left), 0.1, 0.7);
+    }
+    for (double& d : direction_) d *= length;
+    return length;
+}
+
+void Equilibrium::find_mechanism(CollapseEvidence& evidence) {
+    std::fill(start_.begin(), start_.end(), 0.0);
+    for (size_t i = 0; i < direction_.size(); ++i) start_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
+    locate_mechanism(kinematics_, points_, start_, evidence);
 }
 
 /// Largest displacement that the whole loads would give the skeleton if it did not yield, m.

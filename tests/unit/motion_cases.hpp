@@ -3,6 +3,7 @@
 
 #include "background/shape.hpp"
 #include "motion/equilibrium.hpp"
+#include "points/quadrature.hpp"
 
 #include <array>
 #include <cmath>
@@ -61,26 +62,9 @@ inline Mesh column_mesh(int32_t cells, double height) {
 }
 
 /// The cells' quadrature points, without stress.
-inline Points quadrature_points(const Mesh& mesh) {
-    Points points;
-    points.dimension = mesh.dimension;
-    points.cell_start.push_back(0);
-    for (int32_t c = 0; c < mesh.cell_count(); ++c) {
-        const int32_t start = mesh.cell_start[static_cast<size_t>(c)];
-        with_shape(mesh.cell_start[static_cast<size_t>(c) + 1] - start, [&](auto shape) {
-            using Shape = decltype(shape);
-            const auto places = gather_places<Shape>(mesh.position.data(), mesh.cell_nodes.data() + start);
-            for (size_t i = 0; i < Shape::points; ++i) {
-                const auto place = place_in_cell<Shape>(places, Shape::point[i]);
-                points.position.insert(points.position.end(), place.begin(), place.end());
-                points.volume.push_back(map_shape<Shape>(places, Shape::point[i]).determinant * Shape::weight[i]);
-                points.soil.push_back(mesh.cell_soil[static_cast<size_t>(c)]);
-            }
-        });
-        points.cell_start.push_back(static_cast<int32_t>(points.volume.size()));
-    }
-    const size_t count = points.volume.size();
-    points.count = static_cast<int32_t>(count);
+inline Points unstressed_points(const Mesh& mesh) {
+    Points points = make_points(mesh);
+    const auto count = static_cast<size_t>(points.count);
     points.displacement.assign(points.position.size(), 0.0);
     points.skeleton_stress.assign(4 * count, 0.0);
     points.strain.assign(4 * count, 0.0);
@@ -120,6 +104,12 @@ inline Solid elastic_solid(double young_modulus, double poisson_ratio) {
     solid.model = SolidModel::elastic;
     solid.young_modulus = young_modulus;
     solid.poisson_ratio = poisson_ratio;
+    return solid;
+}
+
+inline Solid mohr_coulomb_solid(double young_modulus, double poisson_ratio) {
+    Solid solid = elastic_solid(young_modulus, poisson_ratio);
+    solid.model = SolidModel::mohr_coulomb;
     return solid;
 }
 
