@@ -62,6 +62,7 @@ struct FlowIntegrator::Arkode {
     Arkode& operator=(const Arkode&) = delete;
 
     void start(const FlowState& state);
+    void make_memory();
     int solve_stage(N_Vector correction);
 
     static Arkode& of(SUNNonlinearSolver solver) { return *static_cast<Arkode*>(solver->content); }
@@ -87,7 +88,11 @@ FlowIntegrator::Arkode::Arkode(FlowSystem& system_in, double tolerance_in)
     nonlinear_solver->ops->setsysfn = [](SUNNonlinearSolver, SUNNonlinSolSysFn) { return 0; };
     nonlinear_solver->ops->solve = [](SUNNonlinearSolver self, N_Vector, N_Vector correction, N_Vector, realtype,
                                       booleantype, void*) { return of(self).solve_stage(correction); };
+}
 
+// Anew for every advance: ARKODE's step control remembers, and a step that was undone must leave nothing behind.
+void FlowIntegrator::Arkode::make_memory() {
+    if (memory != nullptr) ARKStepFree(&memory);
     memory = ARKStepCreate(nullptr, right_hand_side, 0.0, variables, context);
     if (memory == nullptr) throw Error(Status::out_of_memory, "SUNDIALS could not set up the flow's time integration");
     check(ARKStepSetUserData(memory, this), "ARKStepSetUserData");
@@ -117,8 +122,10 @@ void FlowIntegrator::Arkode::start(const FlowState& state) {
     std::copy(state.stored.begin(), state.stored.end(), y);
     std::copy(state.totals.begin(), state.totals.end(), y + state.stored.size());
     accepted = state.pressure;
+    solver.forget();
+    system.evaluate(0.0, accepted);  // for the error weights
     stage_time = accepted_time = 0.0;
-    check(ARKStepReInit(memory, nullptr, right_hand_side, 0.0, variables), "ARKStepReInit");
+    make_memory();
 }
 
 // ARKODE asks for it where a step begins, and for that state alone are its values used.

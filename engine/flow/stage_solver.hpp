@@ -18,6 +18,9 @@ public:
     /// Finds the steady state, inflow = 0, from `pressure`, until the system's imbalance is below `tolerance`.
     bool solve_steady(double tolerance, std::span<double> pressure);
 
+    /// The next solve depends on its input alone, not on what was solved before.
+    void forget() { solver_.forget_pivots(); }
+
     [[nodiscard]] int64_t iterations() const { return iterations_; }  ///< since the start
 
 private:

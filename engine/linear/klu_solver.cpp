@@ -83,6 +83,10 @@ bool KluSolver::factorise(const SparseMatrix& matrix) {
     return klu_rcond(symbolic, numeric, &common) != 0 && common.rcond > 0;
 }
 
+void KluSolver::forget_pivots() {
+    if (handles_->numeric != nullptr) klu_free_numeric(&handles_->numeric, &handles_->common);
+}
+
 void KluSolver::solve(const SparseMatrix& matrix, std::span<double> b) {
     auto& [common, symbolic, numeric] = *handles_;
     assert(numeric != nullptr && static_cast<int32_t>(b.size()) == matrix.size());

@@ -35,6 +35,9 @@ public:
     /// Factorises. False when the matrix is singular to working precision or not finite.
     bool factorise(const SparseMatrix& matrix);
 
+    /// The next factorise() chooses its pivots anew, so that its bits follow from its matrix alone.
+    void forget_pivots();
+
     /// Replaces b by A^-1 b. Needs a successful factorise().
     void solve(const SparseMatrix& matrix, std::span<double> b);
 

@@ -9,7 +9,7 @@ namespace talus {
 namespace {
 
 constexpr double chord_share = 4e-4;    // of the suction scale
-constexpr double near_wet_share = 0.02; // likewise
+constexpr double near_wet_share = 0.1;  // likewise
 
 // Four-point Gauss-Legendre on [-1, 1].
 constexpr std::array<double, 4> gauss_place{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
