@@ -7,45 +7,21 @@
 namespace talus {
 namespace {
 
-// Share of the fall that takes k_r below, exact where ln k_r is linear between the two (Scharfetter & Gummel 1969): 1/2 where diffusion
-// rules, 0 where gravity does.
-struct Share {
-    double value;
-    double slope;  ///< by the Peclet number
-};
-
-Share share_below(double peclet) {
-    if (peclet < 1e-2) return {0.5 - peclet / 12.0, -1.0 / 12.0};
-    if (peclet > 500.0) return {1.0 / peclet, -1.0 / (peclet * peclet)};
-    const double grown = std::expm1(peclet);
-    return {1.0 / peclet - 1.0 / grown, (1.0 + grown) / (grown * grown) - 1.0 / (peclet * peclet)};
-}
-
 struct LinkFlow {
     double flow;     ///< a -> b, m3/s
     double slope_a;  ///< d(flow)/dp_a
     double slope_b;
 };
 
-// Flow from a to b: the difference of the potentials, exact for steady flow without gravity, and what falls, times a mean k_r of above and
-// below. The share of below is that of an exponential k_r as steep as the one below, so that the flow never grows with the pressure it
-// flows to: second order, and monotone. It ends with suction, where Mualem's k_r is steeper than any cell can tell.
+// Flow from a to b: the difference of the potentials, exact for steady flow without gravity, and what falls, times k_r upstream of it.
+// Monotone in both pressures; the error of the upstream k_r is a share of its change across the link that vanishes with rho g h k' / k.
 LinkFlow link_flow(const HydraulicState& a, const HydraulicState& b, double transmissibility, double fall) {
     const bool falls_to_b = fall > 0;
     const HydraulicState& above = falls_to_b ? a : b;
-    const HydraulicState& below = falls_to_b ? b : a;
-    const double weight = transmissibility > 0 ? std::abs(fall) / transmissibility : 0.0;  // Pa, of the water between them
-    const Share share = share_below(weight * below.steepness);
-    const double part = transmissibility > 0 ? share.value * below.dryness : 0.0;
-    const double part_slope = transmissibility > 0 ? share.slope * weight * below.steepness_slope * below.dryness +
-                                                         share.value * below.dryness_slope
-                                                   : 0.0;
-    const double mean = above.permeability + part * (below.permeability - above.permeability);
-    const double slope_above = fall * (1.0 - part) * above.permeability_slope;
-    const double slope_below = fall * (part * below.permeability_slope + part_slope * (below.permeability - above.permeability));
-    return {transmissibility * (a.potential - b.potential) + fall * mean,
-            transmissibility * a.permeability + (falls_to_b ? slope_above : slope_below),
-            -transmissibility * b.permeability + (falls_to_b ? slope_below : slope_above)};
+    const double fall_slope = fall * above.permeability_slope;
+    return {transmissibility * (a.potential - b.potential) + fall * above.permeability,
+            transmissibility * a.permeability + (falls_to_b ? fall_slope : 0.0),
+            -transmissibility * b.permeability + (falls_to_b ? 0.0 : fall_slope)};
 }
 
 }  // namespace

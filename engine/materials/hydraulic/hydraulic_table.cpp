@@ -8,8 +8,7 @@
 namespace talus {
 namespace {
 
-constexpr double chord_share = 4e-4;    // of the suction scale
-constexpr double near_wet_share = 0.1;  // likewise
+constexpr double chord_share = 4e-4;  // of the suction scale
 
 // Four-point Gauss-Legendre on [-1, 1].
 constexpr std::array<double, 4> gauss_place{-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
@@ -30,7 +29,6 @@ double row_slope(const Curve& curve, double place) {
 
 HydraulicTable::HydraulicTable(const Hydraulics& hydraulics)
     : chord_(chord_share * suction_scale(hydraulics.retention)),
-      near_wet_(near_wet_share * suction_scale(hydraulics.retention)),
       residual_(hydraulics.retention.residual_saturation),
       maximum_(hydraulics.retention.maximum_saturation),
       rows_(table_rows) {
@@ -60,14 +58,6 @@ void HydraulicTable::fill_curves(const Hydraulics& hydraulics) {
     for (size_t i = 0; i < rows_.size(); ++i) {
         rows_[i].permeability = value[i];
         rows_[i].permeability_slope = slope[i];
-        const double suction = suction_at(chord_, static_cast<double>(i));
-        rows_[i].steepness = value[i] > 0 ? -slope[i] / (table_spacing * suction * value[i]) : 0.0;
-    }
-    // Not a curve of its own, so that its slopes are the table's secants.
-    for (size_t i = 0; i < rows_.size(); ++i) {
-        const size_t before = i == 0 ? 0 : i - 1;
-        const size_t after = std::min(i + 1, rows_.size() - 1);
-        rows_[i].steepness_slope = (rows_[after].steepness - rows_[before].steepness) / static_cast<double>(after - before);
     }
 }
 

@@ -23,10 +23,6 @@ struct HydraulicState {
     double permeability;        ///< k_r, -
     double permeability_slope;  ///< dk_r/dp, 1/Pa
     double potential;           ///< Kirchhoff potential, integral of k_r dp from saturation, Pa
-    double steepness;           ///< d ln k_r / dp, 1/Pa; kept on the chord, where it is cut
-    double steepness_slope;     ///< d(steepness)/dp, 1/Pa2
-    double dryness;             ///< 1 where dry, falling to 0 at saturation within a small part of the suction scale
-    double dryness_slope;       ///< d(dryness)/dp, 1/Pa
 };
 
 class HydraulicTable {
@@ -53,7 +49,6 @@ private:
         double saturation, saturation_slope;
         double permeability, permeability_slope;
         double potential, potential_slope;
-        double steepness, steepness_slope;
     };
 
     void fill_curves(const Hydraulics& hydraulics);
@@ -61,10 +56,8 @@ private:
     void find_switch();
     [[nodiscard]] double pressure_of_row_value(double value, double Row::*field, double Row::*slope) const;
     [[nodiscard]] HydraulicState wet(double pressure) const;
-    [[nodiscard]] Hermite dryness_at(double pressure) const;
 
-    double chord_;     ///< Pa
-    double near_wet_;  ///< Pa, suction at which the dryness is 1/2
+    double chord_;  ///< Pa
     double residual_;
     double maximum_;
     double switch_pressure_ = 0;
@@ -85,33 +78,16 @@ inline HydraulicState HydraulicTable::at(double pressure) const {
     const Hermite s = hermite(a.saturation, b.saturation, a.saturation_slope, b.saturation_slope, t);
     const Hermite k = hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t);
     const Hermite phi = hermite(a.potential, b.potential, a.potential_slope, b.potential_slope, t);
-    const Hermite steep = hermite(a.steepness, b.steepness, a.steepness_slope, b.steepness_slope, t);
-    const auto [dryness, dryness_slope] = dryness_at(pressure);
-    return {s.value, s.slope * per_pressure, k.value, k.slope * per_pressure, phi.value, steep.value, steep.slope * per_pressure,
-            dryness, dryness_slope};
-}
-
-inline Hermite HydraulicTable::dryness_at(double pressure) const {
-    const double square = pressure * pressure;
-    const double sum = square + near_wet_ * near_wet_;
-    return {square / sum, 2.0 * pressure * near_wet_ * near_wet_ / (sum * sum)};
+    return {s.value, s.slope * per_pressure, k.value, k.slope * per_pressure, phi.value};
 }
 
 inline HydraulicState HydraulicTable::wet(double pressure) const {
+    if (pressure > 0) return {maximum_, 0.0, 1.0, 0.0, pressure};
     const Row& end = rows_.front();
-    if (pressure > 0) return {maximum_, 0.0, 1.0, 0.0, pressure, end.steepness, 0.0, 0.0, 0.0};
     const double capacity = (maximum_ - end.saturation) / chord_;
     const double slope = (1.0 - end.permeability) / chord_;
-    const auto [dryness, dryness_slope] = dryness_at(pressure);
-    return {maximum_ + capacity * pressure,
-            capacity,
-            1.0 + slope * pressure,
-            slope,
-            pressure * (1.0 + 0.5 * slope * pressure),
-            end.steepness,
-            0.0,
-            dryness,
-            dryness_slope};
+    return {maximum_ + capacity * pressure, capacity, 1.0 + slope * pressure, slope,
+            pressure * (1.0 + 0.5 * slope * pressure)};
 }
 
 }  // namespace talus
