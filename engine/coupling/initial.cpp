@@ -71,7 +71,7 @@ void Simulation::make_flow() {
 
     flow_->skeleton.softness.assign(portions, 0.0);
     flow_->skeleton.expected_stress.resize(portions);
-    flow_->skeleton.projection.resize(flow_->network.links.size());
+    flow_->skeleton.projection.resize(flow_->network.neighbours.size());
     state_.flow_pore_volume = state_.pore_volume;
     for (auto* field : {&state_.pore_volume_rate, &state_.pore_stress_rate, &start_stress_, &end_stress_, &end_volume_, &taken_volume_,
                         &found_volume_, &portion_stress_})

@@ -116,9 +116,10 @@ void Simulation::refresh_geometry() {
         for (auto corner = static_cast<size_t>(mesh_.cell_start[c]); corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner)
             flow_->skeleton.softness[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
                 flow_->network.corner_volume[corner] * softness_[static_cast<size_t>(mesh_.cell_soil[c])];
-    for (size_t l = 0; l < flow_->network.links.size(); ++l) {
-        const auto soil = static_cast<size_t>(flow_->network.portions[static_cast<size_t>(flow_->network.links[l].portion_a)].soil);
-        flow_->skeleton.projection[l] = flow_->network.joined_volume[l] * projection_softness_[soil];
+    const Network& network = flow_->network;
+    for (size_t i = 0; i < network.neighbours.size(); ++i) {
+        const auto soil = static_cast<size_t>(network.portions[static_cast<size_t>(network.neighbours[i].portion_a)].soil);
+        flow_->skeleton.projection[i] = network.joined_volume[i] * projection_softness_[soil];
     }
 }
 

@@ -16,49 +16,29 @@ double contract(const Vector& a, const Tensor& k, const Vector& b) {
     return a[0] * (k.xx * b[0] + k.xy * b[1]) + a[1] * (k.xy * b[0] + k.yy * b[1]);
 }
 
-// Number of the pair (i, j), i != j, among the pairs of `corners` corners in lexicographic order.
-constexpr int pair_number(int corners, int i, int j) {
-    const int low = std::min(i, j);
-    const int high = std::max(i, j);
-    return low * corners - low * (low + 1) / 2 + high - low - 1;
-}
-
 struct CellGeometry {
     int corners = 0;
     double volume = 0;
     std::array<double, 4> corner_volume{};
-    std::array<double, 6> conductance{};  ///< per pair, integral of -grad N_i . K grad N_j, m2/s (a column: m/s)
-    std::array<double, 6> fall{};         ///< per pair (i < j), flow i -> j under gravity alone, m2/s (a column: m/s)
+    std::array<double, 4> conductance{};  ///< per edge (c, c + 1), integral of grad . K grad of its dual vector, m2/s (a column: m/s)
+    std::array<double, 4> crossing{};     ///< per corner, the same of the two dual vectors there, for head lost away from the corner
 };
 
 CellGeometry line_geometry(const Mesh& mesh, const int32_t* nodes, const Tensor& k) {
-    const double rise = mesh.position[static_cast<size_t>(nodes[1])] - mesh.position[static_cast<size_t>(nodes[0])];
-    const double length = std::abs(rise);
-    return {2, length, {0.5 * length, 0.5 * length}, {k.yy / length}, {rise > 0 ? -k.yy : k.yy}};
+    const double length = std::abs(mesh.position[static_cast<size_t>(nodes[1])] - mesh.position[static_cast<size_t>(nodes[0])]);
+    return {2, length, {0.5 * length, 0.5 * length}, {k.yy / length}, {}};
 }
 
-// Quadrature at corner c, whose edges to the next and the previous corner span the local frame: there grad N_next and grad N_prev are the
-// frame's dual vectors, grad N_c is minus their sum and the opposite corner has no gradient.
+// Quadrature at corner c, whose edges to the next and the previous corner span the local frame.
 void add_corner(CellGeometry& cell, int c, const Vector& to_next, const Vector& to_previous, double share,
                 const Tensor& k) {
     const double det = to_next[0] * to_previous[1] - to_next[1] * to_previous[0];
-    const Vector grad_next{to_previous[1] / det, -to_previous[0] / det};
-    const Vector grad_previous{-to_next[1] / det, to_next[0] / det};
-    const Vector grad_here{-grad_next[0] - grad_previous[0], -grad_next[1] - grad_previous[1]};
-    const int next = (c + 1) % cell.corners;
-    const int previous = (c + cell.corners - 1) % cell.corners;
+    const Vector dual_next{to_previous[1] / det, -to_previous[0] / det};
+    const Vector dual_previous{-to_next[1] / det, to_next[0] / det};
     const double weight = share * det;
-    const auto pair = [&](int i, int j) { return static_cast<size_t>(pair_number(cell.corners, i, j)); };
-    const auto add = [&](int i, int j, double value) { cell.conductance[pair(i, j)] -= weight * value; };
-    const auto add_fall = [&](int to, const Vector& gradient) {  // from c, along the edge whose dual vector this is
-        const double flow = -weight * (gradient[0] * k.xy + gradient[1] * k.yy);
-        cell.fall[pair(c, to)] += c < to ? flow : -flow;
-    };
-    add_fall(next, grad_next);
-    add_fall(previous, grad_previous);
-    add(c, next, contract(grad_here, k, grad_next));
-    add(c, previous, contract(grad_here, k, grad_previous));
-    add(next, previous, contract(grad_next, k, grad_previous));
+    cell.conductance[static_cast<size_t>(c)] += weight * contract(dual_next, k, dual_next);
+    cell.conductance[static_cast<size_t>((c + cell.corners - 1) % cell.corners)] += weight * contract(dual_previous, k, dual_previous);
+    cell.crossing[static_cast<size_t>(c)] = weight * contract(dual_next, k, dual_previous);
 }
 
 CellGeometry plane_geometry(const Mesh& mesh, const int32_t* nodes, int corners, const Tensor& k) {
@@ -122,36 +102,66 @@ void make_portions(Network& network, const Mesh& mesh) {
     each_corner([&](size_t corner, const auto& key) { network.corner_portion[corner] = numbers.at(key); });
 }
 
-void make_links(Network& network, const Mesh& mesh, const Scene& scene) {
-    constexpr double conducts_nothing = 1e-12;  // of the cell's largest conductance
-    std::map<std::pair<int32_t, int32_t>, int32_t> numbers;
+// The numbers of pairs of portions, in the order in which they come.
+class PairNumbers {
+public:
+    explicit PairNumbers(std::vector<Link>& pairs) : pairs_(pairs) {}
+
+    int32_t of(int32_t a, int32_t b) {
+        const auto [found, added] = numbers_.try_emplace(std::minmax(a, b), static_cast<int32_t>(pairs_.size()));
+        if (added) pairs_.push_back({found->first.first, found->first.second});
+        return found->second;
+    }
+
+private:
+    std::vector<Link>& pairs_;
+    std::map<std::pair<int32_t, int32_t>, int32_t> numbers_;
+};
+
+size_t cell_corners(const Mesh& mesh, int32_t cell) {
+    return static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell) + 1] - mesh.cell_start[static_cast<size_t>(cell)]);
+}
+
+void make_links(Network& network, const Mesh& mesh) {
+    PairNumbers numbers(network.links);
+    network.corner_link.assign(network.corner_portion.size(), -1);
+    for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
+        const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
+        const size_t corners = cell_corners(mesh, cell);
+        for (size_t c = 0; c < (corners == 2 ? 1 : corners); ++c)
+            network.corner_link[first + c] = numbers.of(network.corner_portion[first + c], network.corner_portion[first + (c + 1) % corners]);
+    }
+}
+
+void make_crossings(Network& network, const Mesh& mesh, const Scene& scene) {
+    constexpr double right_angle = 1e-12;  // a crossing below this share of the cell's conductance is none
+    network.corner_crossing.assign(network.corner_portion.size(), -1);
+    for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
+        const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
+        const size_t corners = cell_corners(mesh, cell);
+        if (corners == 2) continue;
+        const CellGeometry geometry = cell_geometry(mesh, cell, {1, 0, 1});
+        const double largest = *std::max_element(geometry.conductance.begin(), geometry.conductance.end());
+        const Conductivity& k =
+            scene.soils[static_cast<size_t>(mesh.cell_soil[static_cast<size_t>(cell)])].hydraulics.conductivity;
+        const bool all_corners = scene.physics.deforming || k.along != k.across;
+        for (size_t c = 0; c < corners; ++c) {
+            if (!all_corners && std::abs(geometry.crossing[c]) < right_angle * largest) continue;
+            network.corner_crossing[first + c] = static_cast<int32_t>(network.crossings.size());
+            network.crossings.push_back({network.corner_link[first + c], network.corner_link[first + (c + corners - 1) % corners]});
+        }
+    }
+}
+
+void make_neighbours(Network& network, const Mesh& mesh) {
+    PairNumbers numbers(network.neighbours);
     network.pair_start.assign(1, 0);
     for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
         const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
-        const CellGeometry geometry = cell_geometry(mesh, cell, {1, 0, 1});
-        const double largest =
-            std::abs(*std::max_element(geometry.conductance.begin(), geometry.conductance.end(),
-                                       [](double a, double b) { return std::abs(a) < std::abs(b); }));
-        const Conductivity& k =
-            scene.soils[static_cast<size_t>(mesh.cell_soil[static_cast<size_t>(cell)])].hydraulics.conductivity;
-        const bool all_pairs = scene.physics.deforming || k.along != k.across;
-        for (int i = 0; i < geometry.corners; ++i) {
-            for (int j = i + 1; j < geometry.corners; ++j) {
-                const double conductance =
-                    geometry.conductance[static_cast<size_t>(pair_number(geometry.corners, i, j))];
-                if (!all_pairs && std::abs(conductance) < conducts_nothing * largest) {
-                    network.pair_link.push_back(-1);
-                    continue;
-                }
-                const int32_t a = network.corner_portion[first + static_cast<size_t>(i)];
-                const int32_t b = network.corner_portion[first + static_cast<size_t>(j)];
-                const auto [found, added] =
-                    numbers.try_emplace(std::minmax(a, b), static_cast<int32_t>(network.links.size()));
-                if (added) network.links.push_back({found->first.first, found->first.second});
-                network.pair_link.push_back(found->second);
-            }
-        }
-        network.pair_start.push_back(static_cast<int32_t>(network.pair_link.size()));
+        for (size_t i = 0; i < cell_corners(mesh, cell); ++i)
+            for (size_t j = i + 1; j < cell_corners(mesh, cell); ++j)
+                network.pair_neighbours.push_back(numbers.of(network.corner_portion[first + i], network.corner_portion[first + j]));
+        network.pair_start.push_back(static_cast<int32_t>(network.pair_neighbours.size()));
     }
 }
 
@@ -168,7 +178,9 @@ Tensor conductivity_tensor(const Conductivity& conductivity) {
 Network make_network(const Mesh& mesh, const Scene& scene) {
     Network network;
     make_portions(network, mesh);
-    make_links(network, mesh, scene);
+    make_links(network, mesh);
+    make_crossings(network, mesh, scene);
+    if (scene.physics.deforming) make_neighbours(network, mesh);
     refresh_geometry(network, mesh, scene, {});
     return network;
 }
@@ -181,29 +193,39 @@ void refresh_geometry(Network& network, const Mesh& mesh, const Scene& scene,
 
     network.corner_volume.assign(network.corner_portion.size(), 0.0);
     network.transmissibility.assign(network.links.size(), 0.0);
-    network.joined_volume.assign(network.links.size(), 0.0);
-    network.fall.assign(network.links.size(), 0.0);
+    network.cross_transmissibility.assign(network.crossings.size(), 0.0);
+    network.joined_volume.assign(network.neighbours.size(), 0.0);
     for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
         const auto index = static_cast<size_t>(cell);
         const CellGeometry geometry = cell_geometry(mesh, cell, tensors[static_cast<size_t>(mesh.cell_soil[index])]);
         const double factor = (conductivity_factor.empty() ? 1.0 : conductivity_factor[index]) / unit_weight;
         const auto first = static_cast<size_t>(mesh.cell_start[index]);
-        for (size_t c = 0; c < static_cast<size_t>(geometry.corners); ++c)
+        const auto corners = static_cast<size_t>(geometry.corners);
+        for (size_t c = 0; c < corners; ++c) {
             network.corner_volume[first + c] = geometry.corner_volume[c];
-        int pair = 0;
-        for (int i = 0; i < geometry.corners; ++i) {
-            for (int j = i + 1; j < geometry.corners; ++j, ++pair) {
-                const int32_t number = network.pair_link[static_cast<size_t>(network.pair_start[index] + pair)];
-                if (number < 0) continue;
-                const auto link = static_cast<size_t>(number);
-                const bool forward = network.corner_portion[first + static_cast<size_t>(i)] == network.links[link].portion_a;
-                const double fall = factor * unit_weight * geometry.fall[static_cast<size_t>(pair)];
-                network.transmissibility[link] += factor * geometry.conductance[static_cast<size_t>(pair)];
-                network.fall[link] += forward ? fall : -fall;
-                network.joined_volume[link] += geometry.volume / (geometry.corners * geometry.corners);
-            }
+            const int32_t link = network.corner_link[first + c];
+            if (link >= 0) network.transmissibility[static_cast<size_t>(link)] += factor * geometry.conductance[c];
+            const int32_t crossing = network.corner_crossing[first + c];
+            if (crossing < 0) continue;
+            const Crossing& links = network.crossings[static_cast<size_t>(crossing)];
+            const int32_t here = network.corner_portion[first + c];
+            const bool away_a = network.links[static_cast<size_t>(links.link_a)].portion_a == here;
+            const bool away_b = network.links[static_cast<size_t>(links.link_b)].portion_a == here;
+            network.cross_transmissibility[static_cast<size_t>(crossing)] = (away_a == away_b ? factor : -factor) * geometry.crossing[c];
         }
+        if (network.neighbours.empty()) continue;
+        for (int32_t pair = network.pair_start[index]; pair < network.pair_start[index + 1]; ++pair)
+            network.joined_volume[static_cast<size_t>(network.pair_neighbours[static_cast<size_t>(pair)])] +=
+                geometry.volume / (geometry.corners * geometry.corners);
     }
+    network.fall.resize(network.links.size());
+    const auto height = [&](int32_t portion) {
+        const auto node = static_cast<size_t>(network.portions[static_cast<size_t>(portion)].node);
+        const auto dimension = static_cast<size_t>(mesh.dimension);
+        return mesh.position[node * dimension + dimension - 1];
+    };
+    for (size_t l = 0; l < network.links.size(); ++l)
+        network.fall[l] = unit_weight * (height(network.links[l].portion_a) - height(network.links[l].portion_b));
 }
 
 }  // namespace talus

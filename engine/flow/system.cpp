@@ -5,27 +5,6 @@
 #include <cmath>
 
 namespace talus {
-namespace {
-
-struct LinkFlow {
-    double flow;     ///< a -> b, m3/s
-    double slope_a;  ///< d(flow)/dp_a
-    double slope_b;
-};
-
-// Flow from a to b: the difference of the potentials, exact for steady flow without gravity, and what falls, times k_r upstream of it.
-// Monotone in both pressures; the error of the upstream k_r is a share of its change across the link that vanishes with rho g h k' / k.
-LinkFlow link_flow(const HydraulicState& a, const HydraulicState& b, double transmissibility, double fall) {
-    const bool falls_to_b = fall > 0;
-    const HydraulicState& above = falls_to_b ? a : b;
-    const double fall_slope = fall * above.permeability_slope;
-    return {transmissibility * (a.potential - b.potential) + fall * above.permeability,
-            transmissibility * a.permeability + (falls_to_b ? fall_slope : 0.0),
-            -transmissibility * b.permeability + (falls_to_b ? 0.0 : fall_slope)};
-}
-
-}  // namespace
-
 FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, FlowBoundaries boundaries_in)
     : network(std::move(network_in)), boundaries(std::move(boundaries_in)), scene_(scene) {
     for (const Soil& soil : scene.soils) tables_.emplace_back(soil.hydraulics);
@@ -35,7 +14,9 @@ FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, Fl
     for (auto* array : {&stored_, &inflow_, &stored_slope_, &inflow_slope_, &node_pore_volume_})
         array->assign(count, 0.0);
     state_.resize(network.portions.size());
+    link_state_.resize(network.links.size());
     link_slope_.resize(network.links.size());
+    cross_slope_.resize(network.crossings.size());
     if (scene.physics.deforming) {
         pore_stress_.resize(network.portions.size());
         pore_stress_slope_.resize(network.portions.size());
@@ -54,13 +35,36 @@ FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, Fl
 }
 
 SparseMatrix FlowSystem::make_matrix() {
-    std::vector<std::array<int32_t, 2>> pairs;
     const auto node = [&](int32_t portion) { return network.portions[static_cast<size_t>(portion)].node; };
-    for (const Link& link : network.links) pairs.push_back({node(link.portion_a), node(link.portion_b)});
+    const auto ends = [&](int32_t link) {
+        const Link& of = network.links[static_cast<size_t>(link)];
+        return std::array{node(of.portion_a), node(of.portion_b)};
+    };
+    std::vector<std::array<int32_t, 2>> pairs;
+    for (const auto* list : {&network.links, &network.neighbours})
+        for (const Link& link : *list) pairs.push_back({node(link.portion_a), node(link.portion_b)});
+    for (const Crossing& crossing : network.crossings)
+        for (const int32_t i : ends(crossing.link_a))
+            for (const int32_t j : ends(crossing.link_b)) pairs.push_back({i, j});
     SparseMatrix matrix = symmetric_pattern(node_count(), pairs);
+
+    const auto places = [&](std::array<int32_t, 2> rows, std::array<int32_t, 2> columns) {
+        return Places{matrix.place(rows[0], columns[0]), matrix.place(rows[0], columns[1]), matrix.place(rows[1], columns[0]),
+                      matrix.place(rows[1], columns[1])};
+    };
     link_places_.clear();
-    for (const auto& [a, b] : pairs)
-        link_places_.push_back({matrix.place(a, a), matrix.place(a, b), matrix.place(b, a), matrix.place(b, b)});
+    neighbour_places_.clear();
+    cross_places_.clear();
+    const auto own_places = [&](const Link& link) {
+        const std::array both{node(link.portion_a), node(link.portion_b)};
+        return places(both, both);
+    };
+    for (const Link& link : network.links) link_places_.push_back(own_places(link));
+    for (const Link& link : network.neighbours) neighbour_places_.push_back(own_places(link));
+    for (const Crossing& crossing : network.crossings) {
+        cross_places_.push_back(places(ends(crossing.link_a), ends(crossing.link_b)));
+        cross_places_.push_back(places(ends(crossing.link_b), ends(crossing.link_a)));
+    }
     diagonal_.clear();
     for (int32_t i = 0; i < node_count(); ++i) diagonal_.push_back(matrix.place(i, i));
     return matrix;
@@ -81,7 +85,8 @@ void FlowSystem::evaluate(double t, std::span<const double> pressure) {
     } else {
         evaluate_deforming(t, pressure);
     }
-    evaluate_links();
+    evaluate_links(pressure);
+    evaluate_crossings();
     evaluate_surface(pressure);
     evaluate_flux(t);
 }
@@ -123,24 +128,65 @@ void FlowSystem::evaluate_deforming(double t, std::span<const double> pressure) 
                                           skeleton.softness[i] * pore_stress_slope_[i] * here.saturation);
         node_pore_volume_[node] += pores;
     }
-    for (size_t l = 0; l < network.links.size(); ++l) {
-        const auto a = static_cast<size_t>(network.links[l].portion_a);
-        const auto b = static_cast<size_t>(network.links[l].portion_b);
-        const double exchanged = skeleton.projection[l] * (pore_stress_[a] - pore_stress_[b]);
+    for (size_t i = 0; i < network.neighbours.size(); ++i) {
+        const auto a = static_cast<size_t>(network.neighbours[i].portion_a);
+        const auto b = static_cast<size_t>(network.neighbours[i].portion_b);
+        const double exchanged = skeleton.projection[i] * (pore_stress_[a] - pore_stress_[b]);
         stored_[static_cast<size_t>(network.portions[a].node)] += exchanged;
         stored_[static_cast<size_t>(network.portions[b].node)] -= exchanged;
     }
 }
 
-void FlowSystem::evaluate_links() {
+void FlowSystem::evaluate_links(std::span<const double> pressure) {
     for (size_t l = 0; l < network.links.size(); ++l) {
-        const auto a = static_cast<size_t>(network.links[l].portion_a);
-        const auto b = static_cast<size_t>(network.links[l].portion_b);
-        const LinkFlow link = link_flow(state_[a], state_[b], network.transmissibility[l], network.fall[l]);
-        inflow_[static_cast<size_t>(network.portions[a].node)] -= link.flow;
-        inflow_[static_cast<size_t>(network.portions[b].node)] += link.flow;
-        link_slope_[l] = {link.slope_a, link.slope_b};
+        const Portion& a = network.portions[static_cast<size_t>(network.links[l].portion_a)];
+        const Portion& b = network.portions[static_cast<size_t>(network.links[l].portion_b)];
+        const LinkEnd end_a{pressure[static_cast<size_t>(a.node)], state_[static_cast<size_t>(network.links[l].portion_a)]};
+        const LinkEnd end_b{pressure[static_cast<size_t>(b.node)], state_[static_cast<size_t>(network.links[l].portion_b)]};
+        const HydraulicTable& table = tables_[static_cast<size_t>(a.soil)];
+        LinkState& link = link_state_[l];
+        link.head = end_a.pressure - end_b.pressure + network.fall[l];
+        if (network.fall[l] >= 0) {
+            const MeanPermeability mean = mean_permeability(table, end_a, end_b, network.fall[l]);
+            link.permeability = mean.value;
+            link.permeability_slope = {mean.slope_upper, mean.slope_lower};
+        } else {
+            const MeanPermeability mean = mean_permeability(table, end_b, end_a, -network.fall[l]);
+            link.permeability = mean.value;
+            link.permeability_slope = {mean.slope_lower, mean.slope_upper};
+        }
+        const double conductance = network.transmissibility[l] * link.permeability;
+        const double steepness = network.transmissibility[l] * link.head;
+        link_slope_[l] = {conductance + steepness * link.permeability_slope[0], steepness * link.permeability_slope[1] - conductance};
+        add_flow(network.links[l], conductance * link.head);
     }
+}
+
+// Along each of two links flows C sqrt(k_a k_b) times the head lost along the other.
+void FlowSystem::evaluate_crossings() {
+    for (size_t c = 0; c < network.crossings.size(); ++c) {
+        const auto a = static_cast<size_t>(network.crossings[c].link_a);
+        const auto b = static_cast<size_t>(network.crossings[c].link_b);
+        const LinkState& link_a = link_state_[a];
+        const LinkState& link_b = link_state_[b];
+        const double conductance = network.cross_transmissibility[c] * std::sqrt(link_a.permeability * link_b.permeability);
+        const double steepness_a = conductance > 0 || conductance < 0 ? 0.5 * conductance / link_a.permeability : 0.0;
+        const double steepness_b = conductance > 0 || conductance < 0 ? 0.5 * conductance / link_b.permeability : 0.0;
+        for (size_t end = 0; end < 2; ++end) {
+            const double own = end == 0 ? conductance : -conductance;
+            link_slope_[a][end] += link_b.head * steepness_a * link_a.permeability_slope[end];
+            link_slope_[b][end] += link_a.head * steepness_b * link_b.permeability_slope[end];
+            cross_slope_[c][0][end] = own + link_b.head * steepness_b * link_b.permeability_slope[end];
+            cross_slope_[c][1][end] = own + link_a.head * steepness_a * link_a.permeability_slope[end];
+        }
+        add_flow(network.links[a], conductance * link_b.head);
+        add_flow(network.links[b], conductance * link_a.head);
+    }
+}
+
+void FlowSystem::add_flow(const Link& link, double flow) {
+    inflow_[static_cast<size_t>(network.portions[static_cast<size_t>(link.portion_a)].node)] -= flow;
+    inflow_[static_cast<size_t>(network.portions[static_cast<size_t>(link.portion_b)].node)] += flow;
 }
 
 void FlowSystem::evaluate_surface(std::span<const double> pressure) {
@@ -191,25 +237,35 @@ void FlowSystem::assemble(double storage, double step, SparseMatrix& matrix) con
     for (size_t i = 0; i < diagonal_.size(); ++i)
         matrix.value[static_cast<size_t>(diagonal_[i])] =
             held_node_[i] != 0 ? 1.0 : storage * stored_slope_[i] - step * inflow_slope_[i];
-    const bool deforming = !skeleton.softness.empty();
-    for (size_t l = 0; l < link_places_.size(); ++l) {
-        const auto a = static_cast<size_t>(network.links[l].portion_a);
-        const auto b = static_cast<size_t>(network.links[l].portion_b);
-        double slope_a = step * link_slope_[l][0];
-        double slope_b = step * link_slope_[l][1];
-        if (deforming) {
-            slope_a += storage * skeleton.projection[l] * pore_stress_slope_[a];
-            slope_b -= storage * skeleton.projection[l] * pore_stress_slope_[b];
-        }
-        const Places& place = link_places_[l];
-        if (held_node_[static_cast<size_t>(network.portions[a].node)] == 0) {
-            matrix.value[static_cast<size_t>(place.aa)] += slope_a;
-            matrix.value[static_cast<size_t>(place.ab)] += slope_b;
-        }
-        if (held_node_[static_cast<size_t>(network.portions[b].node)] == 0) {
-            matrix.value[static_cast<size_t>(place.ba)] -= slope_a;
-            matrix.value[static_cast<size_t>(place.bb)] -= slope_b;
-        }
+    for (size_t l = 0; l < link_places_.size(); ++l)
+        add_exchange(network.links[l], link_places_[l], {step * link_slope_[l][0], step * link_slope_[l][1]}, matrix);
+    for (size_t c = 0; c < cross_slope_.size(); ++c) {
+        const auto& [slope_a, slope_b] = cross_slope_[c];
+        add_exchange(network.links[static_cast<size_t>(network.crossings[c].link_a)], cross_places_[2 * c],
+                     {step * slope_a[0], step * slope_a[1]}, matrix);
+        add_exchange(network.links[static_cast<size_t>(network.crossings[c].link_b)], cross_places_[2 * c + 1],
+                     {step * slope_b[0], step * slope_b[1]}, matrix);
+    }
+    if (skeleton.softness.empty() || storage == 0) return;
+    for (size_t i = 0; i < neighbour_places_.size(); ++i) {
+        const double softness = storage * skeleton.projection[i];
+        const Link& pair = network.neighbours[i];
+        add_exchange(pair, neighbour_places_[i],
+                     {softness * pore_stress_slope_[static_cast<size_t>(pair.portion_a)],
+                      -softness * pore_stress_slope_[static_cast<size_t>(pair.portion_b)]},
+                     matrix);
+    }
+}
+
+// What leaves the first end of a link and enters the second, by two pressures.
+void FlowSystem::add_exchange(const Link& link, const Places& place, std::array<double, 2> slope, SparseMatrix& matrix) const {
+    if (held_node_[static_cast<size_t>(network.portions[static_cast<size_t>(link.portion_a)].node)] == 0) {
+        matrix.value[static_cast<size_t>(place.aa)] += slope[0];
+        matrix.value[static_cast<size_t>(place.ab)] += slope[1];
+    }
+    if (held_node_[static_cast<size_t>(network.portions[static_cast<size_t>(link.portion_b)].node)] == 0) {
+        matrix.value[static_cast<size_t>(place.ba)] -= slope[0];
+        matrix.value[static_cast<size_t>(place.bb)] -= slope[1];
     }
 }
 
@@ -218,10 +274,9 @@ double FlowSystem::imbalance() const {
     for (size_t l = 0; l < network.links.size(); ++l) {
         const auto a = static_cast<size_t>(network.links[l].portion_a);
         const auto b = static_cast<size_t>(network.links[l].portion_b);
-        const double driven = std::abs(network.transmissibility[l] * (state_[b].potential - state_[a].potential));
-        const double falling = std::abs(network.fall[l]) * std::max(state_[a].permeability, state_[b].permeability);
+        const double driving = std::abs(link_state_[l].head - network.fall[l]) + std::abs(network.fall[l]);
         for (const size_t end : {a, b})
-            passing[static_cast<size_t>(network.portions[end].node)] += driven + falling;
+            passing[static_cast<size_t>(network.portions[end].node)] += network.transmissibility[l] * link_state_[l].permeability * driving;
     }
     double largest = 0;
     for (size_t i = 0; i < passing.size(); ++i)

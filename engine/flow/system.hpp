@@ -3,6 +3,7 @@
 #pragma once
 
 #include "flow/boundaries.hpp"
+#include "flow/mean_permeability.hpp"
 #include "flow/network.hpp"
 #include "linear/klu_solver.hpp"
 #include "materials/hydraulic/hydraulic_table.hpp"
@@ -40,7 +41,7 @@ struct SkeletonMotion {
     std::vector<double> softness;       ///< per portion, m3/Pa; empty: rigid
     std::vector<Ramp> expected_stress;  ///< per portion, Pa
     std::vector<double>
-        projection;  ///< per link, m3/Pa: pressure projection, which keeps equal-order elements from oscillating
+        projection;  ///< per neighbours, m3/Pa: pressure projection, which keeps equal-order elements from oscillating
 };
 
 class FlowSystem {
@@ -89,7 +90,9 @@ private:
     void assemble(double storage, double step, SparseMatrix& matrix) const;
     void evaluate_rigid(std::span<const double> pressure);
     void evaluate_deforming(double t, std::span<const double> pressure);
-    void evaluate_links();
+    void evaluate_links(std::span<const double> pressure);
+    void evaluate_crossings();
+    void add_flow(const Link& link, double flow);
     void evaluate_surface(std::span<const double> pressure);
     void evaluate_flux(double t);
 
@@ -102,7 +105,15 @@ private:
     std::vector<HydraulicState> state_;                    // per portion
     std::vector<double> stored_slope_;                     // per node, by its own pressure
     std::vector<double> inflow_slope_;                     // per node, by its own pressure, of the surface
-    std::vector<std::array<double, 2>> link_slope_;        // per link: d(flow a -> b)/dp_a, /dp_b
+    struct LinkState {
+        double head;          ///< lost from a to b, Pa
+        double permeability;  ///< mean k_r, -
+        std::array<double, 2> permeability_slope;
+    };
+    std::vector<LinkState> link_state_;
+    std::vector<std::array<double, 2>> link_slope_;  // per link: d(flow a -> b)/dp of its own ends
+    std::vector<std::array<std::array<double, 2>, 2>>
+        cross_slope_;  // per crossing: d(flow of link a)/dp of b's ends, d(flow of link b)/dp of a's ends
     std::vector<double> pore_stress_, pore_stress_slope_;  // per portion, deforming only
     std::vector<double> stored_, inflow_, node_pore_volume_;
     FlowTotals total_rates_{};
@@ -110,7 +121,9 @@ private:
     struct Places {
         int32_t aa, ab, ba, bb;
     };
-    std::vector<Places> link_places_;  // in the matrix's values
+    void add_exchange(const Link& link, const Places& place, std::array<double, 2> slope, SparseMatrix& matrix) const;
+
+    std::vector<Places> link_places_, neighbour_places_, cross_places_;  // in the matrix's values
     std::vector<int32_t> diagonal_;
 };
 

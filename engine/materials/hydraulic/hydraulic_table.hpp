@@ -43,6 +43,8 @@ public:
     /// Where the unknown turns from pressure (wetter) to saturation (drier): the steepest point of the retention, Pa.
     [[nodiscard]] double switch_pressure() const { return switch_pressure_; }
     [[nodiscard]] double residual_saturation() const { return residual_; }
+    /// The suction below which the curves are chords, Pa.
+    [[nodiscard]] double chord() const { return chord_; }
 
 private:
     struct Row {  // at s_k = chord exp(k spacing): values, and slopes per row
