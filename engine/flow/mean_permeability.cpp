@@ -21,13 +21,15 @@ MeanPermeability integral_mean(const LinkEnd& a, const LinkEnd& b) {
     return {mean, (mean - a.state.permeability) / step, (b.state.permeability - mean) / step};
 }
 
-bool may_be_steep(const LinkEnd& upper, const LinkEnd& lower, double fall) {
+// Cheap and certain: k_r nearly the same at both ends, not steep there, and what flows on the side of what falls that it must lie on.
+bool is_surely_monotone(const LinkEnd& upper, const LinkEnd& lower, double fall, double flow) {
     constexpr double largest_ratio = 2.0;
     constexpr double largest_peclet = 1.0;
+    const auto is_gentle = [&](const HydraulicState& end) { return fall * end.permeability_slope <= largest_peclet * end.permeability; };
     const auto [less, more] = std::minmax(upper.state.permeability, lower.state.permeability);
-    return more > largest_ratio * less ||
-           fall * upper.state.permeability_slope > largest_peclet * upper.state.permeability ||
-           fall * lower.state.permeability_slope > largest_peclet * lower.state.permeability;
+    const double excess = flow - fall * upper.state.permeability;
+    return more <= largest_ratio * less && is_gentle(upper.state) && is_gentle(lower.state) &&
+           (lower.pressure < upper.pressure ? excess >= 0 : excess <= 0);
 }
 
 // The flow from one upper pressure as a function of the lower one.
@@ -70,15 +72,19 @@ double turning_pressure(const Downflow& downflow, double monotone, double turned
 MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& upper, const LinkEnd& lower, double fall) {
     const double rise = lower.pressure - upper.pressure;
     const MeanPermeability central = integral_mean(upper, lower);
-    if (rise >= fall || !may_be_steep(upper, lower, fall)) return central;
+    const double head = fall - rise;
+    if (head <= 0 || is_surely_monotone(upper, lower, fall, central.value * head)) return central;
 
     // Places from the upper pressure to the lower one, evenly apart in ln(suction), where the curves are straightest.
     constexpr size_t places = 9;
     std::array<double, places> place{};
     const double from = std::log(std::max(-upper.pressure, table.chord()));
     const double to = std::log(std::max(-lower.pressure, table.chord()));
-    for (size_t i = 0; i < places; ++i)
-        place[i] = -std::exp(from + (to - from) * static_cast<double>(i) / static_cast<double>(places - 1));
+    const auto [driest, wettest] = std::minmax(upper.pressure, lower.pressure);
+    for (size_t i = 0; i < places; ++i) {
+        const double share = static_cast<double>(i) / static_cast<double>(places - 1);
+        place[i] = std::clamp(-std::exp(from + (to - from) * share), driest, wettest);
+    }
     place.front() = upper.pressure;
     place.back() = lower.pressure;
 
@@ -93,7 +99,6 @@ MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& u
         extreme_flow = flow;
     }
     if (extreme == places - 1 && downflow.is_monotone(lower)) return central;
-    const double head = downflow.head(lower);
     if (extreme == 0) {  // what falls from the upper end alone
         const double value = fall * upper.state.permeability / head;
         return {value, (fall * upper.state.permeability_slope - value) / head, value / head};
