@@ -6,6 +6,7 @@
 
 namespace talus {
 namespace {
+constexpr double least_share = 0.5;
 
 // Of the pressures. Where k_r hardly changes, the difference of the potentials has lost its digits and Hermite's rule, of fourth order, has not.
 MeanPermeability integral_mean(const LinkEnd& a, const LinkEnd& b) {
@@ -35,10 +36,10 @@ bool is_surely_monotone(const LinkEnd& upper, const LinkEnd& lower, double fall,
 // The flow from one upper pressure as a function of the lower one.
 class Downflow {
 public:
-    Downflow(const HydraulicTable& table, const LinkEnd& upper, double fall) : table_(table), upper_(upper), fall_(fall) {}
+    Downflow(const HydraulicTable& table, const LinkEnd& upper, double fall, double share) : table_(table), upper_(upper), fall_(fall), share_(share) {}
 
     [[nodiscard]] LinkEnd at(double pressure) const { return {pressure, table_.at(pressure)}; }
-    [[nodiscard]] double flow(const LinkEnd& lower) const { return integral_mean(upper_, lower).value * head(lower); }
+    [[nodiscard]] double flow(const LinkEnd& lower) const { return integral_mean(upper_, lower).value * head(lower) + share_ * lower.state.potential; }
     /// By the upper pressure.
     [[nodiscard]] double slope(const LinkEnd& lower) const {
         const MeanPermeability mean = integral_mean(upper_, lower);
@@ -47,14 +48,14 @@ public:
     /// Whether the flow falls as the lower pressure rises.
     [[nodiscard]] bool is_monotone(const LinkEnd& lower) const {
         const MeanPermeability mean = integral_mean(upper_, lower);
-        return mean.value >= head(lower) * mean.slope_lower;
+        return mean.value >= head(lower) * mean.slope_lower + share_ * lower.state.permeability;
     }
     [[nodiscard]] double head(const LinkEnd& lower) const { return upper_.pressure + fall_ - lower.pressure; }
 
 private:
     const HydraulicTable& table_;
     const LinkEnd& upper_;
-    double fall_;
+    double fall_, share_;
 };
 
 // The lower pressure of the extreme flow, between two places on whose first the flow is monotone and on whose second it is not.
@@ -88,7 +89,8 @@ MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& u
     place.front() = upper.pressure;
     place.back() = lower.pressure;
 
-    const Downflow downflow(table, upper, fall);
+    const double share = rise < 0 ? least_share : 0.0;
+    const Downflow downflow(table, upper, fall, share);
     const double sign = rise < 0 ? 1.0 : -1.0;  // drier below: the largest flow; wetter below: the least
     size_t extreme = places - 1;
     double extreme_flow = sign * downflow.flow(lower);
@@ -99,14 +101,18 @@ MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& u
         extreme_flow = flow;
     }
     if (extreme == places - 1 && downflow.is_monotone(lower)) return central;
+    double flow, slope_upper;
     if (extreme == 0) {  // what falls from the upper end alone
-        const double value = fall * upper.state.permeability / head;
-        return {value, (fall * upper.state.permeability_slope - value) / head, value / head};
+        flow = fall * upper.state.permeability + share * upper.state.potential;
+        slope_upper = fall * upper.state.permeability_slope + share * upper.state.permeability;
+    } else {
+        const size_t after = std::min(extreme + 1, places - 1);
+        const LinkEnd turning = downflow.at(turning_pressure(downflow, place[extreme - 1], place[after]));
+        flow = downflow.flow(turning);
+        slope_upper = downflow.slope(turning);
     }
-    const size_t after = std::min(extreme + 1, places - 1);
-    const LinkEnd turning = downflow.at(turning_pressure(downflow, place[extreme - 1], place[after]));
-    const double value = downflow.flow(turning) / head;
-    return {value, (downflow.slope(turning) - value) / head, value / head};
+    const double value = (flow - share * lower.state.potential) / head;
+    return {value, (slope_upper - value) / head, (value - share * lower.state.permeability) / head};
 }
 
 }  // namespace talus
