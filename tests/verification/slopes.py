@@ -46,18 +46,7 @@ def field_error(case, engine):
     """Root mean square of the pressure's error over the reference's raster at 36 h."""
     field = read_csv(f"{case}_field.csv")
     places = numpy.stack([field["x_m"], field["y_m"]], axis=1)
-    return numpy.sqrt(numpy.mean((sample_inside(engine, "pressure", places) - field["pressure_Pa"]) ** 2))
-
-
-def sample_inside(engine, field, places, step=1e-3, steps=100):
-    """A field at places; where the ground has sunk below a place, as little below it as needed."""
-    values = engine.sample(field, places)
-    for k in range(1, steps):
-        outside = numpy.isnan(values)
-        if not outside.any():
-            break
-        values[outside] = engine.sample(field, places[outside] - [0.0, k * step])
-    return values
+    return numpy.sqrt(numpy.mean((engine.sample("pressure", places) - field["pressure_Pa"]) ** 2))
 
 
 def rows(case):
