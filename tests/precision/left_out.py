@@ -7,6 +7,7 @@ import talus
 from page import number, table
 from rows import Clock, scene_of
 from sweep import circumstances, in_a_process
+from variants import VARIANTS
 
 SCENE = "slope_gentle"
 HOURS = 6
@@ -19,37 +20,6 @@ INTRODUCTION = f"""\
 of it by steps of an hour, one thread, a process a variant. *State* is `bytes` of `talus_engine_describe`: the fields at nodes
 and points. *Process* is what the process grew by, matrices and their factors included. In brackets: the ratio to the full scene.
 """
-
-
-# --- variants of the scene ---
-
-def without(entry, *names):
-    return {name: value for name, value in entry.items() if name not in names}
-
-
-def boundaries_without(scene, *names):
-    """Those that still say something."""
-    changed = [without(boundary, *names) for boundary in scene["boundaries"]]
-    return [boundary for boundary in changed if "flow" in boundary or "motion" in boundary]
-
-
-def rigid(scene):
-    return {**scene, "physics": {"deforming": False}, "soils": [without(soil, "dryDensity", "solid") for soil in scene["soils"]],
-            "boundaries": boundaries_without(scene, "motion"), "initial": without(scene["initial"], "stress")}
-
-
-def dry_soil(soil):
-    """Its strength is that without suction."""
-    strength = {**soil["solid"]["strength"], "model": "constant"}
-    return {**without(soil, "hydraulics"), "solid": {**soil["solid"], "strength": strength}}
-
-
-def dry(scene):
-    return {**without(scene, "surface"), "physics": {"water": False}, "soils": [dry_soil(soil) for soil in scene["soils"]],
-            "boundaries": boundaries_without(scene, "flow", "flowValue"), "initial": {"stress": scene["initial"]["stress"]}}
-
-
-VARIANTS = {"full": lambda scene: scene, "rigid skeleton": rigid, "dry": dry}
 
 
 # --- one variant ---
