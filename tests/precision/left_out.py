@@ -14,7 +14,7 @@ HOURS = 6
 
 INTRODUCTION = f"""\
 <!-- Written by tests/bench. Do not edit. -->
-# What is left out costs nothing
+# What a scene saves by what it leaves out
 
 `tests/bench` writes this page and `build/reports/bench.json`. The scene is `{SCENE}` as it is in `samples/scenes`, {HOURS} hours
 of it by steps of an hour, one thread, a process a variant. *State* is `bytes` of `talus_engine_describe`: the fields at nodes
@@ -71,7 +71,7 @@ FIGURES = {
 def figure_line(row, full):
     for value_of in FIGURES.values():
         value, whole = value_of(row), value_of(full)
-        yield number(value) + (f" ({value / whole:.2f})" if row is not full and whole else "")
+        yield number(value) + (f" ({number(value / whole)})" if row is not full and whole else "")
 
 
 def page(result):

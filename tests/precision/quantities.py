@@ -5,6 +5,7 @@ import dataclasses
 WATCHED = ("crest", "face", "beside_toe")  # of the displacement
 
 
+SAME = 0.01  # errors that differ by this part of them are the same error
 MILLIMETRES = ("mm", 1e3)
 
 
@@ -57,10 +58,10 @@ def done_rows(result):
 
 
 def front(rows, quantity):
-    """Of rows by cost: those with a smaller error than every cheaper one."""
+    """Of rows by cost: those with a smaller error than every cheaper one, by more than SAME."""
     best, found = float("inf"), []
     for row in rows:
-        if quantity.of(row) < best:
+        if (1 + SAME) * quantity.of(row) < best:
             best = quantity.of(row)
             found.append(row)
     return found
