@@ -14,8 +14,9 @@ import unittest
 import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bindings/python"))
+sys.path[:0] = [str(ROOT / "bindings/python"), str(ROOT / "tests/precision")]
 import talus
+from variants import VARIANTS
 from talus._library import library
 
 SCENES = ROOT / "samples/scenes"
@@ -86,6 +87,43 @@ class Basics(unittest.TestCase):
             report = engine.step(10)
             self.assertAlmostEqual(report["water_rain"], 5e-4)
             self.assertEqual(report["rain_substitutions"], 1)
+
+
+class LeftOut(unittest.TestCase):
+    """What the physics of a scene leaves out is not there: no unknowns, no fields, no bytes."""
+
+    OF_MOTION = {"displacement", "velocity", "total_stress", "net_stress", "strain", "plastic_strain", "mobilised_strength"}
+    OF_WATER = {"pressure", "point_pressure", "suction", "saturation", "water_content", "darcy_flux"}
+
+    def described(self, variant):
+        scene = json.loads((SCENES / "slope_gentle.json").read_text())
+        scene["ground"]["section"].update(columnWidth=4, surfaceCellHeight=0.5, gradedDepth=1, growth=1.6, largestCellHeight=4)
+        scene["initial"] = {"flow": "hydrostatic", "waterTable": 8, "stress": "gravity"}
+        scene["schedule"] = {"duration": 3600, "step": 3600}
+        with talus.Engine(talus.Scene.from_json(VARIANTS[variant](scene))) as engine:
+            engine.step(60)
+            return engine.describe(), set(engine.fields)
+
+    def test_full_scene_has_all(self):
+        described, fields = self.described("full")
+        self.assertEqual(described["unknowns"]["flow"], described["nodes"])
+        self.assertGreater(described["unknowns"]["motion"], described["nodes"])
+        self.assertLessEqual(self.OF_MOTION | self.OF_WATER, fields)
+
+    def test_rigid_skeleton_has_no_motion(self):
+        described, fields = self.described("rigid skeleton")
+        self.assertEqual(described["unknowns"], {"flow": described["nodes"], "motion": 0})
+        self.assertFalse(self.OF_MOTION & fields)
+        self.assertLessEqual(self.OF_WATER, fields)
+        self.assertIn("deformation", " ".join(described["left_out"]))
+        self.assertLess(described["bytes"], self.described("full")[0]["bytes"])
+
+    def test_dry_ground_has_no_water(self):
+        described, fields = self.described("dry")
+        self.assertEqual(described["unknowns"]["flow"], 0)
+        self.assertFalse(self.OF_WATER & fields)
+        self.assertIn("water", " ".join(described["left_out"]))
+        self.assertLess(described["bytes"], self.described("full")[0]["bytes"])
 
 
 class Arrays(unittest.TestCase):

@@ -1,6 +1,7 @@
 """What every verification case shares: reading references, running scenes with a clock, making rows."""
 
 import csv
+import json
 import pathlib
 import time
 
@@ -34,6 +35,11 @@ def read_csv(name):
 
 def engine_of(name):
     return talus.Engine(talus.Scene.from_file(str(SCENES / f"{name}.json")))
+
+
+def scene_of(name):
+    """A scene as a dict, to be changed."""
+    return json.loads((SCENES / f"{name}.json").read_text())
 
 
 def row(case, quantity, norm, error, bound, unit, reference, clock):

@@ -3,9 +3,10 @@
 Flow in FEniCSx (Galerkin, k_r at 2 x 2 points, lumped or consistent mass, SDIRK2, steps grown to LARGEST_STEP and cut when Newton
 fails), equilibrium hourly by mechanics.py on the same quads (linear, B-bar); the strain rate of the last hour enters the flow.
 Only the solve is timed (start state included): no imports, no compilation of forms, no mesh.
-Usage: baseline.py SCENE [LARGEST_STEP_S [consistent|lumped]] ; prints and writes baseline_SCENE.json
+Usage: baseline.py SCENE [LARGEST_STEP_S [consistent|lumped]] ; prints and writes baseline_SCENE.json in the folder it is run in
 """
 import json
+import pathlib
 import sys
 import time
 import numpy as np
@@ -14,6 +15,9 @@ import soil
 from flow import Flow
 from mechanics import Mechanics
 from scene import Scene
+
+
+HERE = pathlib.Path(__file__).resolve().parent
 
 
 class UniformScene(Scene):
@@ -77,7 +81,7 @@ def compute(flow, mechanics, largest_step):
 
 def errors(scene, grid, pressures, displacements):
     result = {}
-    reference = np.genfromtxt(scene.name + ".csv", delimiter=",", names=True)
+    reference = np.genfromtxt(HERE / f"{scene.name}.csv", delimiter=",", names=True)
     for name in "ABC":
         p = np.array([interpolate(scene, grid, values, [scene.probes[name]])[0] for values in pressures])
         result[f"pressure_{name}_Pa"] = np.abs(p - reference[f"pressure_{name}_Pa"]).max()
@@ -86,7 +90,7 @@ def errors(scene, grid, pressures, displacements):
         u = np.array([[interpolate(scene, grid, values, [place])[0] for values in both] for both in displacements])
         exact = np.stack([reference[f"ux_{name}_m"], reference[f"uy_{name}_m"]], axis=1)
         result[f"displacement_{name}_m"] = np.hypot(*(u - exact).T).max()
-    field = np.genfromtxt(scene.name + "_field.csv", delimiter=",", names=True)
+    field = np.genfromtxt(HERE / f"{scene.name}_field.csv", delimiter=",", names=True)
     places = np.stack([field["x_m"], field["y_m"]], axis=1)
     p = interpolate(scene, grid, pressures[-1], places)
     result["rms_pressure_Pa"] = np.sqrt(np.mean((p - field["pressure_Pa"]) ** 2))

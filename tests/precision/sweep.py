@@ -1,0 +1,123 @@
+"""Runs a case in a setting of its own, in a process of its own; and the finite-element baseline beside it."""
+
+import importlib.util
+import json
+import multiprocessing
+import os
+import pathlib
+import platform
+import subprocess
+import sys
+
+import column
+import slopes
+import talus
+from rows import REFERENCES, scene_of
+
+WALL_BOUND = 120.0  # s: a run that takes longer is stopped
+LEAST_MEASURED = 1.0  # s: shorter runs are repeated until they add up to this,
+MOST_REPEATS = 5  # but no more than this, and the quickest counts
+DEFAULT_TOLERANCE = 1e-3  # of a scene that says none, docs/scenes.md
+SECTION_LENGTHS = ("columnWidth", "surfaceCellHeight", "largestCellHeight")
+
+
+# --- settings ---
+
+def set_resolution(scene, coarsening):
+    """Changes the lengths of the scene's cells by a factor; returns the height of the uppermost cell."""
+    if "column" in scene["ground"]:
+        ground = scene["ground"]["column"]
+        ground["cells"] = round(ground["cells"] / coarsening)
+        return ground["height"] / ground["cells"]
+    ground = scene["ground"]["section"]
+    for name in SECTION_LENGTHS:
+        ground[name] *= coarsening
+    return ground["surfaceCellHeight"]
+
+
+def set_tolerance(scene, loosening):
+    numerics = scene.setdefault("numerics", {})
+    numerics["tolerance"] = float(f"{numerics.get('tolerance', DEFAULT_TOLERANCE) * loosening:.3g}")
+    return numerics["tolerance"]
+
+
+# --- one run ---
+
+def run(case, coarsening, loosening):
+    """A row: setting, size, errors and seconds, or the reason why there are none."""
+    scene = scene_of(case)
+    setting = {"resolution_m": set_resolution(scene, coarsening), "tolerance": set_tolerance(scene, loosening)}
+    row = {"case": case, "setting": setting, "default": coarsening == 1 and loosening == 1, "nodes": None, "errors": None,
+           "wall_s": None, "cpu_s": None, "reason": None}
+    return {**row, **in_a_process(measure_or_say, case, scene)}
+
+
+def in_a_process(function, *arguments):
+    """What function returns, from a process that starts with nothing of an earlier run's and may be stopped."""
+    receiver, sender = multiprocessing.Pipe(duplex=False)
+    process = multiprocessing.Process(target=lambda: sender.send(function(*arguments)))
+    process.start()
+    sender.close()
+    try:
+        return receiver.recv() if receiver.poll(WALL_BOUND) else {"reason": f"not done in {WALL_BOUND:g} s"}
+    except EOFError:
+        process.join()
+        return {"reason": f"the process ended with {process.exitcode}"}
+    finally:
+        process.kill()
+        process.join()
+
+
+def measure_or_say(case, scene):
+    try:
+        return measure(case, scene)
+    except talus.Error as error:
+        return {"reason": str(error)}
+
+
+def measure(case, scene):
+    made = talus.Scene.from_json(scene)
+    simulate = column.simulate if case.startswith("column") else slopes.simulate
+    clocks = []
+    while len(clocks) < MOST_REPEATS and sum(clock.wall for clock in clocks) < LEAST_MEASURED:
+        *result, clock = simulate(lambda: talus.Engine(made))
+        clocks.append(clock)
+    engine = result[0]
+    lost = [event["time"] for event in engine.events() if event["kind"] == "loss_of_equilibrium"]
+    if lost:
+        return {"reason": f"no equilibrium from {lost[0] / 3600:.2f} h on, where the reference has one"}
+    errors = column_errors(case, *result) if case.startswith("column") else slope_errors(case, *result)
+    return {"nodes": engine.describe()["nodes"], "errors": {name: float(error) for name, error in errors.items()},
+            "wall_s": min(clock.wall for clock in clocks), "cpu_s": min(clock.cpu for clock in clocks)}
+
+
+def column_errors(case, _engine, profiles):
+    """The largest over the times of the profiles."""
+    errors = list(column.profile_errors(case, profiles))
+    return {name: max(error[name] for error in errors) for name in errors[0]}
+
+
+def slope_errors(case, engine):
+    return {"rms_pressure_Pa": slopes.field_error(case, engine), **slopes.history_errors(case, engine)}
+
+
+# --- the baseline ---
+
+def run_baseline(case, folder):
+    """The finite elements of reference/baseline.py, run now if possible, else as recorded; None where there are none."""
+    recorded = REFERENCES / f"baseline_{case}.json"
+    if not recorded.exists():
+        return None
+    command = [sys.executable, str(REFERENCES / "baseline.py"), case]
+    ran = importlib.util.find_spec("dolfinx") and subprocess.run(command, cwd=folder, capture_output=True).returncode == 0
+    result = json.loads(((folder if ran else REFERENCES) / recorded.name).read_text())
+    name = f"FEM, {result['cells']} linear quads, " + ("run beside" if ran else "recorded on another occasion")
+    return {"name": name, "recorded": not ran, **{key: result[key] for key in ("nodes", "errors", "wall_s", "cpu_s")}}
+
+
+# --- where it was measured ---
+
+def circumstances():
+    lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+    processor = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+    return {"processor": processor, "cores": os.cpu_count(), "load": round(os.getloadavg()[1], 1), "build": talus.build_info()}
