@@ -33,7 +33,12 @@ bool Simulation::advance(double until, const std::function<bool(double)>& cancel
         switch (exchange(duration, watched)) {
             case Exchange::agreed: state_.time = is_last ? stop : state_.time + duration; break;
             case Exchange::cancelled: return false;
-            case Exchange::disagreed: state_.exchange_step = 0.25 * duration; break;
+            case Exchange::disagreed:
+                state_.exchange_step = 0.25 * duration;
+                if (state_.exchange_step < shortest_exchange * whole)
+                    throw Error(Status::not_converged, at_time(state_.time) + "the skeleton's equilibrium was neither found nor shown to be lost; " +
+                                                           "this says nothing about the slope");
+                break;
             case Exchange::equilibrium_lost:
                 if (duration <= failure_window * whole) lose_equilibrium();
                 state_.exchange_step = 0.25 * duration;
@@ -42,9 +47,6 @@ bool Simulation::advance(double until, const std::function<bool(double)>& cancel
                 throw Error(Status::not_converged, at_time(state_.time) + "the flow's equations were not solved within " +
                                                        value_text(duration) + " s; this says nothing about the slope");
         }
-        if (state_.exchange_step < shortest_exchange * whole)
-            throw Error(Status::not_converged, at_time(state_.time) + "the skeleton's equilibrium was neither found nor shown to be lost; " +
-                                                   "this says nothing about the slope");
     }
     for (size_t i = 0; i < state_.velocity.size(); ++i) state_.velocity[i] = (state_.displacement[i] - displacement_before[i]) / whole;
     update_points();

@@ -53,6 +53,13 @@ TEST_CASE("C API: absurd steps are refused and change nothing") {
     CHECK(talus_engine_time(engine.get()) == 3600);
 }
 
+TEST_CASE("C API: a long step may follow a very short one") {
+    const host::Engine engine = host::engine(host::bank_text);
+    CHECK(talus_engine_step(engine.get(), 3600, nullptr) == TALUS_OK);
+    CHECK(talus_engine_step(engine.get(), 1e-7, nullptr) == TALUS_OK);
+    CHECK(talus_engine_step(engine.get(), 7200, nullptr) == TALUS_OK);
+}
+
 TEST_CASE("C API: a step cancelled by its progress callback is undone bit for bit, wherever it is cancelled") {
     Impatient impatient;
     const talus_options options = watched_by(impatient);
