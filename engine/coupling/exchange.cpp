@@ -192,6 +192,11 @@ void Simulation::accept(double duration, const FlowState& flow) {
     refresh_geometry();
 }
 
+bool Simulation::is_full(std::span<const double> pressure) {
+    constexpr double full = -1.0;  // Pa: no suction to speak of
+    return *std::min_element(pressure.begin(), pressure.end()) >= full;
+}
+
 void Simulation::notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const {
     const FlowWatch before = watch;
     const FlowTotals& rates = flow_->total_rates();
@@ -209,11 +214,10 @@ void Simulation::notice(double time, std::span<const double> pressure, FlowWatch
         if (p > highest) wettest = surface.node;
         highest = std::max(highest, p);
     }
-    constexpr double full = -1.0;        // Pa: no suction to speak of
     constexpr double standing = 10.0;    // Pa: a millimetre of water
     constexpr double noticeable = 0.01;  // of the rain
     watch.time = time;
-    watch.is_saturated = *std::min_element(pressure.begin(), pressure.end()) >= full;
+    watch.is_saturated = is_full(pressure);
     watch.is_ponding = highest > standing || rates[run_off_total] > noticeable * rates[rain_total];
     watch.is_seeping = rates[seepage_total] > 0 && rates[seepage_total] > noticeable * rates[rain_total];
     if (watch.is_saturated && !before.is_saturated) {

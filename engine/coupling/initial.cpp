@@ -181,6 +181,7 @@ void Simulation::set_initial_flow() {
     flow_->evaluate(0.0, flow.pressure);
     flow.stored.assign(flow_->stored().begin(), flow_->stored().end());
     for (const double water : flow.stored) initial_water_ += water;
+    state_.watch.is_saturated = is_full(flow.pressure);
 }
 
 // The steady state under the boundaries' values at the start and, on the ground surface, a held pressure or a rain.

@@ -96,6 +96,7 @@ private:
     [[nodiscard]] double porosity(size_t point) const;
     void refresh_geometry();
     void update_points();
+    [[nodiscard]] static bool is_full(std::span<const double> pressure);
     void notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const;
     [[nodiscard]] Place place_of(int32_t node) const;
 

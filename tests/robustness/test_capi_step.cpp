@@ -60,6 +60,18 @@ TEST_CASE("C API: a long step may follow a very short one") {
     CHECK(talus_engine_step(engine.get(), 7200, nullptr) == TALUS_OK);
 }
 
+TEST_CASE("C API: ground that is full from the start does not fill") {
+    std::string text = host::column_text;
+    const std::string initial = R"({"flow": "saturation", "saturation": 0.85})";
+    text.replace(text.find(initial), initial.size(), R"({"flow": "hydrostatic", "waterTable": 1})");
+    const host::Engine engine = host::engine(text.c_str());
+    CHECK(talus_engine_set_rain(engine.get(), 0, 0) == TALUS_OK);
+    CHECK(talus_engine_step(engine.get(), 10, nullptr) == TALUS_OK);
+    int64_t events = -1;
+    CHECK(talus_engine_event_count(engine.get(), &events) == TALUS_OK);
+    CHECK(events == 0);
+}
+
 TEST_CASE("C API: a step cancelled by its progress callback is undone bit for bit, wherever it is cancelled") {
     Impatient impatient;
     const talus_options options = watched_by(impatient);
