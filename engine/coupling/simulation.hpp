@@ -95,6 +95,7 @@ private:
     void set_loads(const FlowState& flow, double until);
     [[nodiscard]] double porosity(size_t point) const;
     void refresh_geometry();
+    void set_projection();
     void update_points();
     [[nodiscard]] static bool is_full(std::span<const double> pressure);
     void notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const;
