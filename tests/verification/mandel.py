@@ -1,18 +1,19 @@
-"""Mandel's plate: saturated ground squeezed between two rigid smooth plates drains at its sides, flow and skeleton coupled both ways.
+"""Mandel's plate: saturated ground between two rigid smooth plates drains at its sides, coupled both ways.
 
-Mandel (1953); with compressible water Cheng & Detournay (1988), Abousleiman et al. (1996). The pressure at the centre first rises
-above its undrained value (Mandel-Cryer): the drained sides soften and the load moves inwards. The scene is the upper right quarter.
-The plate's settlement is prescribed as the closed solution has it; that the force which then acts on the plate is the constant one
-of the problem is a row of its own. `mandel.py` as a program prints the settlement that the scene holds.
+Mandel (1953); with compressible water Cheng & Detournay (1988), Abousleiman et al. (1996). The pressure at the centre first
+rises above its undrained value (Mandel-Cryer): the drained sides soften and the load moves inwards. The scene is the upper right
+quarter. The plate's settlement is prescribed as the closed solution has it; that the force which then acts on the plate is the
+constant one of the problem is a row of its own. `mandel.py` as a program prints the settlement that the scene holds.
 """
 
 import json
 
 import numpy
+import talus
 from rows import Clock, engine_of, first_step_rows, read_scene, row
 from scipy.optimize import brentq
 
-TIMES = (0.01, 0.05, 0.1, 0.5, 1.0)  # T = c t / a^2
+TIMES = (0.001, 0.01, 0.05, 0.1, 0.5, 1.0)  # T = c t / a^2
 HISTORY = numpy.round(numpy.geomspace(1e-3, 1.0, 61), 6)
 FIRST_STEPS = (1e-9, 1e-6, 1e-3)
 LOAD = 100e3  # Pa: force on the plate over its area
@@ -86,14 +87,34 @@ def rows():
     error = max(abs(force[time] / LOAD + 1) for time in HISTORY)
     yield row("mandel", "force on the plate", "max", error, 0.01, "1", source, clock)
     for time in FIRST_STEPS:
-        with Clock() as clock:
-            engine = engine_of("mandel")
-            engine.push_motion_value("plate", 1, [0], [-plate.settlement([0.0])[0]])
-            engine.step(time * plate.duration)
-            profile = (engine.read("pressure") - start) / plate.initial
-        inwards = numpy.argsort(-x)
-        profiles = [profile[inwards][y[inwards] < 1e-9], profile[inwards][y[inwards] > plate.height - 1e-9]]
-        yield from first_step_rows("mandel", time, profiles, clock)
+        yield from first_step(plate, engine_of("mandel"), f"T = {time:g}", time)
+    yield from first_step(plate, triangle_engine(scene, engine), "triangles", FIRST_STEPS[0])
+
+
+def triangle_engine(scene, quads):
+    """The same on triangles: the quads of an engine cut along alternating diagonals."""
+    node = quads.read("cell_nodes").reshape(-1, 4)
+    place = quads.read("node_position") - quads.read("displacement")
+    column, level = (numpy.unique(centre.round(6), return_inverse=True)[1] for centre in place[node].mean(axis=1).T)
+    is_even = (column + level) % 2 == 0
+    cut = numpy.where(is_even[:, None], node[:, [0, 1, 2, 0, 2, 3]], node[:, [0, 1, 3, 1, 2, 3]]).reshape(-1, 3)
+    count = len(cut)
+    mesh = {"position": place, "cellStart": 3 * numpy.arange(count + 1), "cellNodes": cut, "cellSoil": numpy.zeros(count, int)}
+    arrays = {f"ground.mesh.{name}": array for name, array in mesh.items()}
+    return talus.Engine(talus.Scene.from_json({**scene, "ground": {"mesh": {}}}, arrays))
+
+
+def first_step(plate, engine, when, time):
+    """The plate is put on at once and held for a step of this length."""
+    x, y = engine.read("node_position").T
+    start = engine.read("pressure")
+    with Clock() as clock:
+        engine.push_motion_value("plate", 1, [0], [-plate.settlement([0.0])[0]])
+        engine.step(time * plate.duration)
+    excess = (engine.read("pressure") - start) / plate.initial
+    inwards = numpy.argsort(-x)
+    profiles = [excess[inwards][y[inwards] < 1e-9], excess[inwards][y[inwards] > plate.height - 1e-9]]
+    yield from first_step_rows("mandel", when, profiles, clock)
 
 
 if __name__ == "__main__":

@@ -48,10 +48,9 @@ def row(case, quantity, norm, error, bound, unit, reference, clock):
             "reference": reference, "wall_s": clock.wall, "cpu_s": clock.cpu, "threads": 1, "met": bool(error <= bound)}
 
 
-def first_step_rows(case, time, profiles, clock):
-    """That a sudden load makes no waves: excess pressures over the undrained one, from the drain inwards, rise to 1 and no higher."""
-    when = f"first step, T = {time:g}"
+def first_step_rows(case, when, profiles, clock):
+    """That a sudden load makes no waves: excess pressures over the undrained one rise from the drain inwards, at most to 1."""
     overshoot = max(max(profile.max() - 1, 0) for profile in profiles)
     fall = max(numpy.max(numpy.maximum.accumulate(profile) - profile) for profile in profiles)
-    yield row(case, f"overshoot, {when}", "max", overshoot, 1e-3, "1", "undrained pressure", clock)
-    yield row(case, f"fall inwards, {when}", "max", fall, 1e-3, "1", "monotone", clock)
+    yield row(case, f"overshoot, first step, {when}", "max", overshoot, 1e-3, "1", "undrained pressure", clock)
+    yield row(case, f"fall inwards, first step, {when}", "max", fall, 1e-3, "1", "monotone", clock)

@@ -53,4 +53,4 @@ def rows():
             engine.push_motion_value("load", 1, [0], [-column.load])
             engine.step(time * column.duration)
             profile = (engine.read("pressure") - start) / column.initial
-        yield from first_step_rows("terzaghi", time, [profile[::-1]], clock)
+        yield from first_step_rows("terzaghi", f"T = {time:g}", [profile[::-1]], clock)
