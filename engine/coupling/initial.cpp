@@ -116,6 +116,7 @@ void Simulation::make_motion() {
     }
     equilibrium_ = std::make_unique<Equilibrium>(mesh_, state_.points, std::move(solids), prescribed, scene_.gravity);
     refresh_geometry();
+    if (flow_) set_projection();
 }
 
 // Which degrees of freedom the boundaries give, and where they pull.

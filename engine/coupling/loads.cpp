@@ -117,11 +117,11 @@ void Simulation::refresh_geometry() {
         for (auto corner = static_cast<size_t>(mesh_.cell_start[c]); corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner)
             flow_->skeleton.softness[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
                 flow_->network.corner_volume[corner] * softness_[static_cast<size_t>(mesh_.cell_soil[c])];
-    set_projection();
 }
 
 // The pressure projection in the stored water: per cell, volume / corners^2 times the difference of each pair of corners, which is what the
-// cell's mean pressure leaves out of the pressures at its nodes (Bochev, Dohrmann & Gunzburger, SIAM J. Numer. Anal. 44, 2006).
+// cell's mean pressure leaves out of the pressures at its nodes (Bochev, Dohrmann & Gunzburger, SIAM J. Numer. Anal. 44, 2006). Of the mesh at the start: volumes that
+// followed its motion would change the stored water between two exchanges, by nobody's flow.
 void Simulation::set_projection() {
     const Network& network = flow_->network;
     std::vector<double>& projection = flow_->skeleton.projection;
