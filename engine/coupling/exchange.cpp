@@ -33,7 +33,7 @@ double growth(double first_disagreement) {
 }  // namespace
 
 Simulation::Exchange Simulation::exchange(double duration, const std::function<bool(double)>& cancelled) {
-    const bool skeleton_moves = equilibrium_ && !state_.equilibrium_lost;
+    const bool moves = skeleton_moves();
     FlowState flow = state_.flow;
     FlowWatch watch = state_.watch;
     std::vector<Happening> noticed;
@@ -59,7 +59,7 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
             if (result == AdvanceResult::cancelled) return Exchange::cancelled;
             if (result == AdvanceResult::failed) return Exchange::flow_stopped;
         }
-        if (!skeleton_moves) break;
+        if (!moves) break;
         outcome_ = find_equilibrium(flow, state_.time + duration);
         if (outcome_.status != EquilibriumStatus::converged) {
             equilibrium_->reject();
@@ -79,7 +79,7 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
     accept(duration, flow);
     state_.watch = watch;
     happenings.insert(happenings.end(), noticed.begin(), noticed.end());
-    if (flow_ && skeleton_moves) state_.exchange_step = duration * growth(first_disagreement);
+    if (flow_ && moves) state_.exchange_step = duration * growth(first_disagreement);
     return Exchange::agreed;
 }
 

@@ -83,6 +83,8 @@ private:
 
     // the exchange (exchange.cpp)
     Exchange exchange(double duration, const std::function<bool(double)>& cancelled);
+    [[nodiscard]] bool skeleton_moves() const { return equilibrium_ && !state_.equilibrium_lost; }
+    void shorten_exchange(double duration, double whole, const std::string& problem);
     void lose_equilibrium();
     void set_flow_forcing(double duration);
     void hold_skeleton() const;
