@@ -33,7 +33,7 @@ double growth(double first_disagreement) {
 }  // namespace
 
 Simulation::Exchange Simulation::exchange(double duration, const std::function<bool(double)>& cancelled) {
-    const bool skeleton_moves = equilibrium_ && !state_.equilibrium_lost;
+    const bool moves = skeleton_moves();
     FlowState flow = state_.flow;
     FlowWatch watch = state_.watch;
     std::vector<Happening> noticed;
@@ -59,7 +59,7 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
             if (result == AdvanceResult::cancelled) return Exchange::cancelled;
             if (result == AdvanceResult::failed) return Exchange::flow_stopped;
         }
-        if (!skeleton_moves) break;
+        if (!moves) break;
         outcome_ = find_equilibrium(flow, state_.time + duration);
         if (outcome_.status != EquilibriumStatus::converged) {
             equilibrium_->reject();
@@ -79,7 +79,7 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
     accept(duration, flow);
     state_.watch = watch;
     happenings.insert(happenings.end(), noticed.begin(), noticed.end());
-    if (flow_ && skeleton_moves) state_.exchange_step = duration * growth(first_disagreement);
+    if (flow_ && moves) state_.exchange_step = duration * growth(first_disagreement);
     return Exchange::agreed;
 }
 
@@ -192,6 +192,11 @@ void Simulation::accept(double duration, const FlowState& flow) {
     refresh_geometry();
 }
 
+bool Simulation::is_full(std::span<const double> pressure) {
+    constexpr double full = -1.0;  // Pa: no suction to speak of
+    return *std::min_element(pressure.begin(), pressure.end()) >= full;
+}
+
 void Simulation::notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const {
     const FlowWatch before = watch;
     const FlowTotals& rates = flow_->total_rates();
@@ -209,11 +214,10 @@ void Simulation::notice(double time, std::span<const double> pressure, FlowWatch
         if (p > highest) wettest = surface.node;
         highest = std::max(highest, p);
     }
-    constexpr double full = -1.0;        // Pa: no suction to speak of
     constexpr double standing = 10.0;    // Pa: a millimetre of water
     constexpr double noticeable = 0.01;  // of the rain
     watch.time = time;
-    watch.is_saturated = *std::min_element(pressure.begin(), pressure.end()) >= full;
+    watch.is_saturated = is_full(pressure);
     watch.is_ponding = highest > standing || rates[run_off_total] > noticeable * rates[rain_total];
     watch.is_seeping = rates[seepage_total] > 0 && rates[seepage_total] > noticeable * rates[rain_total];
     if (watch.is_saturated && !before.is_saturated) {

@@ -104,16 +104,19 @@ void Simulation::make_motion() {
     std::vector<Solid> solids;
     for (const Soil& soil : scene_.soils) {
         solids.push_back(soil.solid);
-        // The skeleton's answer to pore stress at constant total stress: the fixed-stress split's modulus (lambda + G in plane strain, the
-        // oedometric one in a column), and that of the pressure projection (Bochev, Dohrmann & Gunzburger 2006; in a column the value
-        // that makes the undrained step a lumped one, hence monotone).
+        // The skeleton's answer to pore stress at constant total stress: the fixed-stress split's modulus, lambda + G in plane strain and the
+        // oedometric one in a column. The pressure projection (Bochev, Dohrmann & Gunzburger 2006) has the oedometric one in both: with it
+        // an undrained step answers a pressure of any wavelength as the continuum does, be it one that the cells do not see at all
+        // (Aguilar, Gaspar, Lisbona & Rodrigo, Int. J. Numer. Methods Eng. 75, 2008). In a column that makes it a lumped one, hence monotone.
         const double shear = soil.solid.young_modulus / (2.0 * (1.0 + soil.solid.poisson_ratio));
         const double lame = 2.0 * shear * soil.solid.poisson_ratio / (1.0 - 2.0 * soil.solid.poisson_ratio);
-        softness_.push_back(1.0 / (dimension == 1 ? lame + 2.0 * shear : lame + shear));
-        projection_softness_.push_back(1.0 / (dimension == 1 ? lame + 2.0 * shear : 2.0 * shear));
+        const double oedometric = lame + 2.0 * shear;
+        softness_.push_back(1.0 / (dimension == 1 ? oedometric : lame + shear));
+        projection_softness_.push_back(1.0 / oedometric);
     }
     equilibrium_ = std::make_unique<Equilibrium>(mesh_, state_.points, std::move(solids), prescribed, scene_.gravity);
     refresh_geometry();
+    if (flow_) set_projection();
 }
 
 // Which degrees of freedom the boundaries give, and where they pull.
@@ -181,6 +184,7 @@ void Simulation::set_initial_flow() {
     flow_->evaluate(0.0, flow.pressure);
     flow.stored.assign(flow_->stored().begin(), flow_->stored().end());
     for (const double water : flow.stored) initial_water_ += water;
+    state_.watch.is_saturated = is_full(flow.pressure);
 }
 
 // The steady state under the boundaries' values at the start and, on the ground surface, a held pressure or a rain.

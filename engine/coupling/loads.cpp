@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace talus {
 
@@ -116,10 +117,24 @@ void Simulation::refresh_geometry() {
         for (auto corner = static_cast<size_t>(mesh_.cell_start[c]); corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner)
             flow_->skeleton.softness[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
                 flow_->network.corner_volume[corner] * softness_[static_cast<size_t>(mesh_.cell_soil[c])];
+}
+
+// The pressure projection in the stored water: per cell, volume / corners^2 times the difference of each pair of corners, which is what the
+// cell's mean pressure leaves out of the pressures at its nodes (Bochev, Dohrmann & Gunzburger, SIAM J. Numer. Anal. 44, 2006). Of the mesh at the start: volumes that
+// followed its motion would change the stored water between two exchanges, by nobody's flow.
+void Simulation::set_projection() {
     const Network& network = flow_->network;
-    for (size_t i = 0; i < network.neighbours.size(); ++i) {
-        const auto soil = static_cast<size_t>(network.portions[static_cast<size_t>(network.neighbours[i].portion_a)].soil);
-        flow_->skeleton.projection[i] = network.joined_volume[i] * projection_softness_[soil];
+    std::vector<double>& projection = flow_->skeleton.projection;
+    std::fill(projection.begin(), projection.end(), 0.0);
+    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
+        const auto first = network.corner_volume.begin() + mesh_.cell_start[c];
+        const auto last = network.corner_volume.begin() + mesh_.cell_start[c + 1];
+        const auto corners = static_cast<double>(last - first);
+        // In triangles the skeleton sees the pressures averaged three times: over the cell, over the patches of its nodes, over their cells.
+        const double averages = corners == 3 ? 3.0 : 1.0;
+        const double share = averages * std::accumulate(first, last, 0.0) / (corners * corners);
+        for (auto pair = static_cast<size_t>(network.pair_start[c]); pair < static_cast<size_t>(network.pair_start[c + 1]); ++pair)
+            projection[static_cast<size_t>(network.pair_neighbours[pair])] += share * projection_softness_[static_cast<size_t>(mesh_.cell_soil[c])];
     }
 }
 

@@ -23,32 +23,46 @@ bool Simulation::advance(double until, const std::function<bool(double)>& cancel
     const double from = state_.time;
     const double whole = until - from;
     const std::vector<double> displacement_before = state_.displacement;
-    if (state_.exchange_step <= 0) state_.exchange_step = equilibrium_ && flow_ ? first_exchange * whole : whole;
+    if (!flow_ || !skeleton_moves()) {
+        state_.exchange_step = whole;  // alone, each goes as far as the host asks
+    } else if (state_.exchange_step <= 0) {
+        state_.exchange_step = first_exchange * whole;
+    }
     while (state_.time < until) {
         const double stop = forcing.next_break(state_.time, until);
         const double left = stop - state_.time;
-        const bool is_last = state_.exchange_step >= left || !equilibrium_ || !flow_;
+        const bool is_last = state_.exchange_step >= left;
         const double duration = is_last ? left : std::min(state_.exchange_step, 0.5 * left);
         const auto watched = [&](double t) { return cancelled((state_.time + t - from) / whole); };
         switch (exchange(duration, watched)) {
             case Exchange::agreed: state_.time = is_last ? stop : state_.time + duration; break;
             case Exchange::cancelled: return false;
-            case Exchange::disagreed: state_.exchange_step = 0.25 * duration; break;
+            case Exchange::disagreed:
+                shorten_exchange(duration, whole, "the skeleton's equilibrium was neither found nor shown to be lost");
+                break;
             case Exchange::equilibrium_lost:
-                if (duration <= failure_window * whole) lose_equilibrium();
-                state_.exchange_step = 0.25 * duration;
+                if (duration > failure_window * whole) {
+                    state_.exchange_step = 0.25 * duration;
+                } else {
+                    lose_equilibrium();
+                    state_.exchange_step = whole;
+                }
                 break;
             case Exchange::flow_stopped:
-                throw Error(Status::not_converged, at_time(state_.time) + "the flow's equations were not solved within " +
-                                                       value_text(duration) + " s; this says nothing about the slope");
+                shorten_exchange(duration, whole, "the flow's equations were not solved within " + value_text(duration) + " s");
+                break;
         }
-        if (state_.exchange_step < shortest_exchange * whole)
-            throw Error(Status::not_converged, at_time(state_.time) + "the skeleton's equilibrium was neither found nor shown to be lost; " +
-                                                   "this says nothing about the slope");
     }
     for (size_t i = 0; i < state_.velocity.size(); ++i) state_.velocity[i] = (state_.displacement[i] - displacement_before[i]) / whole;
     update_points();
     return true;
+}
+
+// What was expected of the skeleton may be what stopped the solvers, and is the less wrong the shorter the exchange.
+void Simulation::shorten_exchange(double duration, double whole, const std::string& problem) {
+    state_.exchange_step = 0.25 * duration;
+    if (skeleton_moves() && state_.exchange_step >= shortest_exchange * whole) return;
+    throw Error(Status::not_converged, at_time(state_.time) + problem + "; this says nothing about the slope");
 }
 
 void Simulation::lose_equilibrium() {

@@ -83,6 +83,8 @@ private:
 
     // the exchange (exchange.cpp)
     Exchange exchange(double duration, const std::function<bool(double)>& cancelled);
+    [[nodiscard]] bool skeleton_moves() const { return equilibrium_ && !state_.equilibrium_lost; }
+    void shorten_exchange(double duration, double whole, const std::string& problem);
     void lose_equilibrium();
     void set_flow_forcing(double duration);
     void hold_skeleton() const;
@@ -95,7 +97,9 @@ private:
     void set_loads(const FlowState& flow, double until);
     [[nodiscard]] double porosity(size_t point) const;
     void refresh_geometry();
+    void set_projection();
     void update_points();
+    [[nodiscard]] static bool is_full(std::span<const double> pressure);
     void notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const;
     [[nodiscard]] Place place_of(int32_t node) const;
 

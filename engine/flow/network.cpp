@@ -194,7 +194,6 @@ void refresh_geometry(Network& network, const Mesh& mesh, const Scene& scene,
     network.corner_volume.assign(network.corner_portion.size(), 0.0);
     network.transmissibility.assign(network.links.size(), 0.0);
     network.cross_transmissibility.assign(network.crossings.size(), 0.0);
-    network.joined_volume.assign(network.neighbours.size(), 0.0);
     for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
         const auto index = static_cast<size_t>(cell);
         const CellGeometry geometry = cell_geometry(mesh, cell, tensors[static_cast<size_t>(mesh.cell_soil[index])]);
@@ -213,10 +212,6 @@ void refresh_geometry(Network& network, const Mesh& mesh, const Scene& scene,
             const bool away_b = network.links[static_cast<size_t>(links.link_b)].portion_a == here;
             network.cross_transmissibility[static_cast<size_t>(crossing)] = (away_a == away_b ? factor : -factor) * geometry.crossing[c];
         }
-        if (network.neighbours.empty()) continue;
-        for (int32_t pair = network.pair_start[index]; pair < network.pair_start[index + 1]; ++pair)
-            network.joined_volume[static_cast<size_t>(network.pair_neighbours[static_cast<size_t>(pair)])] +=
-                geometry.volume / (geometry.corners * geometry.corners);
     }
     network.fall.resize(network.links.size());
     const auto height = [&](int32_t portion) {

@@ -53,8 +53,6 @@ struct Network {
     std::vector<double> transmissibility;  ///< per link, m3/(s Pa)
     std::vector<double> fall;              ///< per link, Pa: weight of a water column as high as a lies above b
     std::vector<double> cross_transmissibility;  ///< per crossing, flow a -> b of one link per head lost along the other, m3/(s Pa)
-    std::vector<double>
-        joined_volume;  ///< per neighbours, sum over their cells of volume / corners^2, m3: weight of the pressure projection
 };
 
 /// A symmetric tensor in the plane.

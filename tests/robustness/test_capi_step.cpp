@@ -53,6 +53,75 @@ TEST_CASE("C API: absurd steps are refused and change nothing") {
     CHECK(talus_engine_time(engine.get()) == 3600);
 }
 
+TEST_CASE("C API: a long step may follow a very short one") {
+    const host::Engine engine = host::engine(host::bank_text);
+    CHECK(talus_engine_step(engine.get(), 3600, nullptr) == TALUS_OK);
+    CHECK(talus_engine_step(engine.get(), 1e-7, nullptr) == TALUS_OK);
+    CHECK(talus_engine_step(engine.get(), 7200, nullptr) == TALUS_OK);
+}
+
+TEST_CASE("C API: dry ground fails where its load exceeds what it bears, within one step") {
+    const host::Engine engine = host::engine(R"({
+        "name": "strip",
+        "physics": {"water": false},
+        "soils": [{"name": "clay", "dryDensity": 1800, "porosity": 0.4,
+                   "solid": {"youngModulus": 1e9, "poissonRatio": 0.4,
+                             "strength": {"model": "constant", "cohesion": 10e3, "frictionAngle": 0}}}],
+        "ground": {"section": {"terrain": [[0, 3], [6, 3]], "base": [[0, 0], [6, 0]], "layers": [{"soil": "clay"}],
+                               "columnWidth": 0.25, "surfaceCellHeight": 0.25, "growth": 1, "largestCellHeight": 0.25}},
+        "boundaries": [{"name": "base", "side": "base", "motion": "fixed"},
+                       {"name": "left", "side": "left", "motion": "roller"},
+                       {"name": "right", "side": "right", "motion": "roller"},
+                       {"name": "load", "side": "surface", "xTo": 1, "motion": "traction",
+                        "motionY": {"time": [0, 100], "value": [0, -200e3]}}],
+        "initial": {"stress": "k0", "k0": 1}
+    })");
+    CHECK(talus_engine_step(engine.get(), 100, nullptr) == TALUS_OK);
+    int64_t events = 0;
+    REQUIRE(talus_engine_event_count(engine.get(), &events) == TALUS_OK);
+    REQUIRE(events == 1);
+    talus_event event = TALUS_EVENT_INIT;
+    REQUIRE(talus_engine_event(engine.get(), 0, &event) == TALUS_OK);
+    CHECK(event.kind == TALUS_LOSS_OF_EQUILIBRIUM);
+    CHECK(event.time > 25.7);  // Prandtl: 5.14 c
+    CHECK(event.time < 28);
+}
+
+TEST_CASE("C API: soft saturated ground may be squeezed by a tenth of its height") {
+    const host::Engine engine = host::engine(R"({
+        "name": "mud",
+        "soils": [{"name": "mud", "dryDensity": 1600, "porosity": 0.4,
+                   "hydraulics": {"retention": {"model": "vanGenuchten", "alpha": 1e-05, "n": 2},
+                                  "conductivity": {"along": 1e-09}},
+                   "solid": {"model": "elastic", "youngModulus": 1e6, "poissonRatio": 0.3}}],
+        "ground": {"column": {"height": 10, "cells": 50, "layers": [{"soil": "mud"}]}},
+        "boundaries": [{"name": "base", "side": "base", "motion": "fixed"},
+                       {"name": "drain", "side": "surface", "flow": "pressure", "flowValue": {"value": [0]}},
+                       {"name": "load", "side": "surface", "motion": "traction",
+                        "motionY": {"time": [0, 1], "value": [0, -130e3]}}],
+        "initial": {"flow": "hydrostatic", "waterTable": 10}
+    })");
+    for (const double time : {0.5, 1e6, 1e9}) {
+        CHECK(talus_engine_advance_to(engine.get(), time, nullptr) == TALUS_OK);
+    }
+    talus_step_report report = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_report(engine.get(), &report) == TALUS_OK);
+    // Logarithmic strain: H [1 - exp(-q m_v)], the load being carried by the skeleton alone.
+    CHECK(report.largest_displacement == doctest::Approx(10 * (1 - std::exp(-130e3 * 0.742857e-6))).epsilon(0.01));
+}
+
+TEST_CASE("C API: ground that is full from the start does not fill") {
+    std::string text = host::column_text;
+    const std::string initial = R"({"flow": "saturation", "saturation": 0.85})";
+    text.replace(text.find(initial), initial.size(), R"({"flow": "hydrostatic", "waterTable": 1})");
+    const host::Engine engine = host::engine(text.c_str());
+    CHECK(talus_engine_set_rain(engine.get(), 0, 0) == TALUS_OK);
+    CHECK(talus_engine_step(engine.get(), 10, nullptr) == TALUS_OK);
+    int64_t events = -1;
+    CHECK(talus_engine_event_count(engine.get(), &events) == TALUS_OK);
+    CHECK(events == 0);
+}
+
 TEST_CASE("C API: a step cancelled by its progress callback is undone bit for bit, wherever it is cancelled") {
     Impatient impatient;
     const talus_options options = watched_by(impatient);

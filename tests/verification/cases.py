@@ -1,11 +1,21 @@
 """The verification cases by name. Each is a function that yields rows (see tests/verify)."""
 
+import functools
+
 import column
+import engine_cases
+import mandel
 import slopes
+import srivastava_yeh
+import terzaghi
 
 CASES = {
     "column": lambda: column.rows("column"),
     "column_constant_k": lambda: column.rows("column_constant_k"),
+    "terzaghi": terzaghi.rows,
+    "mandel": mandel.rows,
+    "srivastava_yeh": srivastava_yeh.rows,
+    **{name: functools.partial(engine_cases.rows, name) for name in ("footing_q4", "footing_t3", "patch", "order")},
     "slope_gentle": lambda: slopes.rows("slope_gentle"),
     "slope": lambda: slopes.rows("slope"),
 }

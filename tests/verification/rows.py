@@ -33,6 +33,11 @@ def read_csv(name):
     return dict(zip(lines[0], values.T))
 
 
+def read_scene(name):
+    """The scene as its JSON says it."""
+    return json.loads((SCENES / f"{name}.json").read_text())
+
+
 def engine_of(name):
     return talus.Engine(talus.Scene.from_file(str(SCENES / f"{name}.json")))
 
@@ -46,3 +51,11 @@ def row(case, quantity, norm, error, bound, unit, reference, clock):
     """One row; met when the error is a number not above the bound."""
     return {"case": case, "quantity": quantity, "norm": norm, "error": float(error), "bound": bound, "unit": unit,
             "reference": reference, "wall_s": clock.wall, "cpu_s": clock.cpu, "threads": 1, "met": bool(error <= bound)}
+
+
+def first_step_rows(case, when, profiles, clock):
+    """That a sudden load makes no waves: excess pressures over the undrained one rise from the drain inwards, at most to 1."""
+    overshoot = max(max(profile.max() - 1, 0) for profile in profiles)
+    fall = max(numpy.max(numpy.maximum.accumulate(profile) - profile) for profile in profiles)
+    yield row(case, f"overshoot, first step, {when}", "max", overshoot, 1e-3, "1", "undrained pressure", clock)
+    yield row(case, f"fall inwards, first step, {when}", "max", fall, 1e-3, "1", "monotone", clock)
