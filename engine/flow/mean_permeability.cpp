@@ -10,10 +10,10 @@ constexpr double least_share = 0.5;
 
 // Of the pressures. Where k_r hardly changes, the difference of the potentials has lost its digits and Hermite's rule, of fourth order, has not.
 MeanPermeability integral_mean(const LinkEnd& a, const LinkEnd& b) {
-    constexpr double hardly = 0.01;
     const double step = b.pressure - a.pressure;
-    const double change = b.state.permeability - a.state.permeability;
-    if (step == 0 || std::abs(change) < hardly * a.state.permeability) {
+    const double hardly = 0.01 * a.state.permeability;
+    if (std::abs(b.state.permeability - a.state.permeability) <= hardly && std::abs(step * a.state.permeability_slope) <= hardly &&
+        std::abs(step * b.state.permeability_slope) <= hardly) {
         const double mean = 0.5 * (a.state.permeability + b.state.permeability) -
                             (b.state.permeability_slope - a.state.permeability_slope) * step / 12.0;
         return {mean, 0.5 * a.state.permeability_slope, 0.5 * b.state.permeability_slope};
