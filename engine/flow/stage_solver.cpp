@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <cstdlib>
 
 namespace talus {
 namespace {
 
-constexpr int most_iterations = 30;
+constexpr int most_iterations = 60;
 constexpr int most_steady_iterations = 100;
 constexpr int most_halvings = 6;
+const double good_contraction = getenv("GC") ? atof(getenv("GC")) : 0.2;
+const double like_steps = getenv("LS") ? atof(getenv("LS")) : 0.2;
 constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more leaves nothing to gain
 
 double largest_relative_change(std::span<const double> before, std::span<const double> after) {
@@ -48,28 +51,41 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, d
     for (size_t h = 0; h < held.size(); ++h)
         pressure[static_cast<size_t>(held[h].node)] = system_.forcing.held[h].at(t);
     double error = residual(t, step, target, pressure);
+    bool is_stale = factorised_step_ <= 0 || std::abs(step / factorised_step_ - 1.0) > like_steps;
     for (int iteration = 0; iteration < most_iterations && error > tolerance; ++iteration) {
         if (!std::isfinite(error)) return false;
         ++iterations_;
-        system_.assemble(step, matrix_);
-        if (!solver_.factorise(matrix_)) return false;
+        const bool is_fresh = is_stale;
+        if (is_stale && !factorise(step)) return false;
         std::transform(residual_.begin(), residual_.end(), change_.begin(), [](double r) { return -r; });
         solver_.solve(matrix_, change_);
         // The equations are accretive in the sum of their absolute residuals (what enters a node leaves others), hence that merit.
         const double merit = merit_;
         double length = 1.0;
         double trial_error = 0;
-        for (int halving = 0; halving <= most_halvings; ++halving, length *= 0.5) {
+        for (int halving = 0; halving <= (is_fresh ? most_halvings : 0); ++halving, length *= 0.5) {
             for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = system_.moved(i, pressure[i], length * change_[i]);
             trial_error = residual(t, step, target, trial_);
             if (merit_ < merit) break;
         }
-        const bool settled = length == 1.0 && largest_relative_change(pressure, trial_) < round_off;
+        is_stale = !(merit_ < good_contraction * merit);
+        if (!is_fresh && !(merit_ < merit)) {  // the old factors lead nowhere: back, and anew
+            error = residual(t, step, target, pressure);
+            continue;
+        }
+        const bool settled = is_fresh && length == 1.0 && largest_relative_change(pressure, trial_) < round_off;
         std::copy(trial_.begin(), trial_.end(), pressure.begin());
         error = trial_error;
         if (settled && std::isfinite(error)) return true;
     }
     return error <= tolerance;
+}
+
+bool StageSolver::factorise(double step) {
+    ++factorisations_;
+    system_.assemble(step, matrix_);
+    factorised_step_ = solver_.factorise(matrix_) ? step : 0.0;
+    return factorised_step_ > 0;
 }
 
 bool StageSolver::solve_steady(double tolerance, std::span<double> pressure) {

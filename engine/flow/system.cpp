@@ -15,8 +15,6 @@ FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, Fl
         array->assign(count, 0.0);
     state_.resize(network.portions.size());
     link_state_.resize(network.links.size());
-    link_slope_.resize(network.links.size());
-    cross_slope_.resize(network.crossings.size());
     if (scene.physics.deforming) {
         pore_stress_.resize(network.portions.size());
         pore_stress_slope_.resize(network.portions.size());
@@ -155,10 +153,7 @@ void FlowSystem::evaluate_links(std::span<const double> pressure) {
             link.permeability = mean.value;
             link.permeability_slope = {mean.slope_lower, mean.slope_upper};
         }
-        const double conductance = network.transmissibility[l] * link.permeability;
-        const double steepness = network.transmissibility[l] * link.head;
-        link_slope_[l] = {conductance + steepness * link.permeability_slope[0], steepness * link.permeability_slope[1] - conductance};
-        add_flow(network.links[l], conductance * link.head);
+        add_flow(network.links[l], network.transmissibility[l] * link.permeability * link.head);
     }
 }
 
@@ -170,15 +165,6 @@ void FlowSystem::evaluate_crossings() {
         const LinkState& link_a = link_state_[a];
         const LinkState& link_b = link_state_[b];
         const double conductance = network.cross_transmissibility[c] * std::sqrt(link_a.permeability * link_b.permeability);
-        const double steepness_a = conductance > 0 || conductance < 0 ? 0.5 * conductance / link_a.permeability : 0.0;
-        const double steepness_b = conductance > 0 || conductance < 0 ? 0.5 * conductance / link_b.permeability : 0.0;
-        for (size_t end = 0; end < 2; ++end) {
-            const double own = end == 0 ? conductance : -conductance;
-            link_slope_[a][end] += link_b.head * steepness_a * link_a.permeability_slope[end];
-            link_slope_[b][end] += link_a.head * steepness_b * link_b.permeability_slope[end];
-            cross_slope_[c][0][end] = own + link_b.head * steepness_b * link_b.permeability_slope[end];
-            cross_slope_[c][1][end] = own + link_a.head * steepness_a * link_a.permeability_slope[end];
-        }
         add_flow(network.links[a], conductance * link_b.head);
         add_flow(network.links[b], conductance * link_a.head);
     }
@@ -237,15 +223,8 @@ void FlowSystem::assemble(double storage, double step, SparseMatrix& matrix) con
     for (size_t i = 0; i < diagonal_.size(); ++i)
         matrix.value[static_cast<size_t>(diagonal_[i])] =
             held_node_[i] != 0 ? 1.0 : storage * stored_slope_[i] - step * inflow_slope_[i];
-    for (size_t l = 0; l < link_places_.size(); ++l)
-        add_exchange(network.links[l], link_places_[l], {step * link_slope_[l][0], step * link_slope_[l][1]}, matrix);
-    for (size_t c = 0; c < cross_slope_.size(); ++c) {
-        const auto& [slope_a, slope_b] = cross_slope_[c];
-        add_exchange(network.links[static_cast<size_t>(network.crossings[c].link_a)], cross_places_[2 * c],
-                     {step * slope_a[0], step * slope_a[1]}, matrix);
-        add_exchange(network.links[static_cast<size_t>(network.crossings[c].link_b)], cross_places_[2 * c + 1],
-                     {step * slope_b[0], step * slope_b[1]}, matrix);
-    }
+    assemble_links(step, matrix);
+    assemble_crossings(step, matrix);
     if (skeleton.softness.empty() || storage == 0) return;
     for (size_t i = 0; i < neighbour_places_.size(); ++i) {
         const double softness = storage * skeleton.projection[i];
@@ -254,6 +233,39 @@ void FlowSystem::assemble(double storage, double step, SparseMatrix& matrix) con
                      {softness * pore_stress_slope_[static_cast<size_t>(pair.portion_a)],
                       -softness * pore_stress_slope_[static_cast<size_t>(pair.portion_b)]},
                      matrix);
+    }
+}
+
+void FlowSystem::assemble_links(double step, SparseMatrix& matrix) const {
+    for (size_t l = 0; l < link_places_.size(); ++l) {
+        const LinkState& link = link_state_[l];
+        const double conductance = step * network.transmissibility[l] * link.permeability;
+        const double steepness = step * network.transmissibility[l] * link.head;
+        add_exchange(network.links[l], link_places_[l],
+                     {conductance + steepness * link.permeability_slope[0], steepness * link.permeability_slope[1] - conductance}, matrix);
+    }
+}
+
+void FlowSystem::assemble_crossings(double step, SparseMatrix& matrix) const {
+    for (size_t c = 0; c < network.crossings.size(); ++c) {
+        const auto a = static_cast<size_t>(network.crossings[c].link_a);
+        const auto b = static_cast<size_t>(network.crossings[c].link_b);
+        const LinkState& link_a = link_state_[a];
+        const LinkState& link_b = link_state_[b];
+        const double mean = std::sqrt(link_a.permeability * link_b.permeability);
+        if (mean == 0) continue;
+        const double conductance = step * network.cross_transmissibility[c] * mean;
+        const double steepness_a = 0.5 * conductance / link_a.permeability;
+        const double steepness_b = 0.5 * conductance / link_b.permeability;
+        const auto own = [](double conductance_here, double steepness, const std::array<double, 2>& slope) {
+            return std::array{conductance_here + steepness * slope[0], steepness * slope[1] - conductance_here};
+        };
+        const auto& slope_a = link_a.permeability_slope;
+        const auto& slope_b = link_b.permeability_slope;
+        add_exchange(network.links[a], link_places_[a], own(0.0, steepness_a * link_b.head, slope_a), matrix);
+        add_exchange(network.links[b], link_places_[b], own(0.0, steepness_b * link_a.head, slope_b), matrix);
+        add_exchange(network.links[a], cross_places_[2 * c], own(conductance, steepness_b * link_b.head, slope_b), matrix);
+        add_exchange(network.links[b], cross_places_[2 * c + 1], own(conductance, steepness_a * link_a.head, slope_a), matrix);
     }
 }
 

@@ -111,9 +111,6 @@ private:
         std::array<double, 2> permeability_slope;
     };
     std::vector<LinkState> link_state_;
-    std::vector<std::array<double, 2>> link_slope_;  // per link: d(flow a -> b)/dp of its own ends
-    std::vector<std::array<std::array<double, 2>, 2>>
-        cross_slope_;  // per crossing: d(flow of link a)/dp of b's ends, d(flow of link b)/dp of a's ends
     std::vector<double> pore_stress_, pore_stress_slope_;  // per portion, deforming only
     std::vector<double> stored_, inflow_, node_pore_volume_;
     FlowTotals total_rates_{};
@@ -121,6 +118,8 @@ private:
     struct Places {
         int32_t aa, ab, ba, bb;
     };
+    void assemble_links(double step, SparseMatrix& matrix) const;
+    void assemble_crossings(double step, SparseMatrix& matrix) const;
     void add_exchange(const Link& link, const Places& place, std::array<double, 2> slope, SparseMatrix& matrix) const;
 
     std::vector<Places> link_places_, neighbour_places_, cross_places_;  // in the matrix's values
