@@ -55,13 +55,6 @@ struct FlowIntegrator::Arkode {
     double stage_time = 0;
     double accepted_time = 0;
     std::vector<double> target;
-    struct Stage {
-        double time;
-        std::vector<double> pressure;
-    };
-    std::vector<Stage> last_pass;  // stages of the last advance, by time, its start first
-    std::vector<Stage> pass;       // of this one
-    bool follows_last_pass = false;
 
     Arkode(FlowSystem& system_in, double tolerance_in);
     ~Arkode();
@@ -70,7 +63,6 @@ struct FlowIntegrator::Arkode {
 
     void start(const FlowState& state);
     void make_memory();
-    void guess_stage(double t);
     int solve_stage(N_Vector correction);
 
     static Arkode& of(SUNNonlinearSolver solver) { return *static_cast<Arkode*>(solver->content); }
@@ -134,10 +126,6 @@ void FlowIntegrator::Arkode::start(const FlowState& state) {
     system.evaluate(0.0, accepted);  // for the error weights
     stage_time = accepted_time = 0.0;
     make_memory();
-    last_pass.swap(pass);
-    pass.assign(1, {0.0, accepted});
-    follows_last_pass = getenv("FP") && last_pass.size() > 1 && last_pass.front().pressure == accepted;
-    if (follows_last_pass) std::sort(last_pass.begin(), last_pass.end(), [](const Stage& a, const Stage& b) { return a.time < b.time; });
 }
 
 // ARKODE asks for it where a step begins, and for that state alone are its values used.
@@ -159,18 +147,6 @@ int FlowIntegrator::Arkode::weights(N_Vector, N_Vector weight, void* user) {
     return 0;
 }
 
-void FlowIntegrator::Arkode::guess_stage(double t) {
-    if (follows_last_pass && t <= last_pass.back().time) {
-        const auto after = std::find_if(last_pass.begin() + 1, last_pass.end(), [&](const Stage& s) { return s.time >= t; });
-        const Stage& b = *after;
-        const Stage& a = *(after - 1);
-        const double share = (t - a.time) / (b.time - a.time);
-        for (size_t i = 0; i < stage.size(); ++i) stage[i] = a.pressure[i] + share * (b.pressure[i] - a.pressure[i]);
-        return;
-    }
-    if (stage_time <= accepted_time || stage_time >= t) stage = accepted;
-}
-
 // One stage z = known + gamma rate(z), where known = predicted + sdata. What the nodes hold after it is defined by the flows, not by the
 // retention curve: Newton's remainder stays in the stored water and enters the next stage's equation, so no water is ever lost to it.
 int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
@@ -185,13 +161,12 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
     const double* before = N_VGetArrayPointer(predicted);
     const double* change = N_VGetArrayPointer(known);
     for (size_t i = 0; i < target.size(); ++i) target[i] = before[i] + change[i];
-    guess_stage(t);
+    if (stage_time <= accepted_time || stage_time >= t) stage = accepted;
     if (!solver.solve(t, gamma, target, stage_tolerance, stage)) {
         stage_time = accepted_time;
         return SUN_NLS_CONV_RECVR;
     }
     stage_time = t;
-    pass.push_back({t, stage});
 
     double* z = N_VGetArrayPointer(correction);
     FlowTotals rates = system.total_rates();

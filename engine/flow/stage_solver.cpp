@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <cstdlib>
 
 namespace talus {
 namespace {
@@ -11,8 +10,8 @@ namespace {
 constexpr int most_iterations = 60;
 constexpr int most_steady_iterations = 100;
 constexpr int most_halvings = 6;
-const double good_contraction = getenv("GC") ? atof(getenv("GC")) : 0.2;
-const double like_steps = getenv("LS") ? atof(getenv("LS")) : 0.2;
+constexpr double good_contraction = 0.2;  // of the residuals in one iteration, with which the factors at hand are kept
+constexpr double like_steps = 0.2;        // relative difference of two time steps that may share factors
 constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more leaves nothing to gain
 
 double largest_relative_change(std::span<const double> before, std::span<const double> after) {
@@ -82,7 +81,6 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, d
 }
 
 bool StageSolver::factorise(double step) {
-    ++factorisations_;
     system_.assemble(step, matrix_);
     factorised_step_ = solver_.factorise(matrix_) ? step : 0.0;
     return factorised_step_ > 0;

@@ -4,8 +4,6 @@
 #include "flow/system.hpp"
 
 #include <vector>
-#include <cstdio>
-#include <cstdlib>
 
 namespace talus {
 
@@ -21,10 +19,7 @@ public:
     bool solve_steady(double tolerance, std::span<double> pressure);
 
     /// The next solve depends on its input alone, not on what was solved before.
-    void forget() {
-        solver_.forget_pivots();
-        factorised_step_ = 0;
-    }
+    void forget() { factorised_step_ = 0; }
 
     [[nodiscard]] int64_t iterations() const { return iterations_; }  ///< since the start
 
@@ -39,9 +34,6 @@ private:
     double merit_ = 0;  // sum of the absolute residuals, m3
     double factorised_step_ = 0;  // s, of the factors at hand; 0: none
     int64_t iterations_ = 0;
-public:
-    int64_t factorisations_ = 0;
-    ~StageSolver() { if (getenv("DBG")) fprintf(stderr, "its %ld factorisations %ld\n", (long)iterations_, (long)factorisations_); }
 };
 
 }  // namespace talus

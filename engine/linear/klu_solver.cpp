@@ -43,11 +43,13 @@ SparseMatrix symmetric_pattern(int32_t size, std::span<const std::array<int32_t,
 struct KluSolver::Handles {
     klu_common common{};
     klu_symbolic* symbolic = nullptr;
-    klu_numeric* numeric = nullptr;
+    klu_numeric* diagonal = nullptr;  // factors on the diagonal's pivots
+    klu_numeric* own = nullptr;       // of the last matrix for which these were bad; empty: they were good
 
     Handles() { klu_defaults(&common); }
     ~Handles() {
-        klu_free_numeric(&numeric, &common);
+        klu_free_numeric(&own, &common);
+        klu_free_numeric(&diagonal, &common);
         klu_free_symbolic(&symbolic, &common);
     }
     Handles(const Handles&) = delete;
@@ -60,37 +62,38 @@ double* values(const SparseMatrix& matrix) { return const_cast<double*>(matrix.v
 }  // namespace
 
 KluSolver::KluSolver(const SparseMatrix& matrix) : handles_(std::make_unique<Handles>()) {
-    auto& [common, symbolic, numeric] = *handles_;
-    symbolic = klu_analyze(matrix.size(), pattern(matrix.column_start), pattern(matrix.row), &common);
-    if (symbolic == nullptr) throw Error(Status::out_of_memory, "KLU could not order the matrix");
+    auto& [common, symbolic, diagonal, own] = *handles_;
+    int* const start = pattern(matrix.column_start);
+    int* const row = pattern(matrix.row);
+    symbolic = klu_analyze(matrix.size(), start, row, &common);
+    std::vector<double> dominant(matrix.row.size(), -1.0);
+    for (int32_t j = 0; j < matrix.size(); ++j) {
+        const int32_t entries = matrix.column_start[static_cast<size_t>(j) + 1] - matrix.column_start[static_cast<size_t>(j)];
+        dominant[static_cast<size_t>(matrix.place(j, j))] = entries;
+    }
+    if (symbolic != nullptr) diagonal = klu_factor(start, row, dominant.data(), symbolic, &common);
+    if (diagonal == nullptr) throw Error(Status::out_of_memory, "KLU could not order the matrix");
 }
 
 KluSolver::~KluSolver() = default;
 
 bool KluSolver::factorise(const SparseMatrix& matrix) {
-    auto& [common, symbolic, numeric] = *handles_;
+    auto& [common, symbolic, diagonal, own] = *handles_;
     int* const start = pattern(matrix.column_start);
     int* const row = pattern(matrix.row);
     constexpr double worst_reciprocal_condition = 1e-14;
-    if (numeric != nullptr) {
-        const bool done = klu_refactor(start, row, values(matrix), symbolic, numeric, &common) != 0;
-        if (done && klu_rcond(symbolic, numeric, &common) != 0 && common.rcond > worst_reciprocal_condition)
-            return true;
-        klu_free_numeric(&numeric, &common);
-    }
-    numeric = klu_factor(start, row, values(matrix), symbolic, &common);
-    if (numeric == nullptr) return false;
-    return klu_rcond(symbolic, numeric, &common) != 0 && common.rcond > 0;
-}
-
-void KluSolver::forget_pivots() {
-    if (handles_->numeric != nullptr) klu_free_numeric(&handles_->numeric, &handles_->common);
+    klu_free_numeric(&own, &common);
+    const bool done = klu_refactor(start, row, values(matrix), symbolic, diagonal, &common) != 0;
+    if (done && klu_rcond(symbolic, diagonal, &common) != 0 && common.rcond > worst_reciprocal_condition) return true;
+    own = klu_factor(start, row, values(matrix), symbolic, &common);
+    if (own == nullptr) return false;
+    return klu_rcond(symbolic, own, &common) != 0 && common.rcond > 0;
 }
 
 void KluSolver::solve(const SparseMatrix& matrix, std::span<double> b) {
-    auto& [common, symbolic, numeric] = *handles_;
-    assert(numeric != nullptr && static_cast<int32_t>(b.size()) == matrix.size());
-    klu_solve(symbolic, numeric, matrix.size(), 1, b.data(), &common);
+    auto& [common, symbolic, diagonal, own] = *handles_;
+    assert(static_cast<int32_t>(b.size()) == matrix.size());
+    klu_solve(symbolic, own != nullptr ? own : diagonal, matrix.size(), 1, b.data(), &common);
 }
 
 }  // namespace talus

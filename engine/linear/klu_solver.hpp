@@ -1,5 +1,5 @@
-// Sparse direct solver: KLU of SuiteSparse (LGPL) on a fixed pattern. Ordered once, refactorised on the same pivots while these stay
-// good, factorised anew with pivoting where they do not. Source: Davis & Palamadai Natarajan, ACM TOMS 37 (2010).
+// Sparse direct solver: KLU of SuiteSparse (LGPL) on a fixed pattern. Ordered once, factorised on the diagonal's pivots, and with
+// pivots of its own a matrix for which these are bad; so its bits follow from the matrix alone, not from those before it. Source: Davis & Palamadai Natarajan, ACM TOMS 37 (2010).
 #pragma once
 
 #include <array>
@@ -34,9 +34,6 @@ public:
 
     /// Factorises. False when the matrix is singular to working precision or not finite.
     bool factorise(const SparseMatrix& matrix);
-
-    /// The next factorise() chooses its pivots anew, so that its bits follow from its matrix alone.
-    void forget_pivots();
 
     /// Replaces b by A^-1 b. Needs a successful factorise().
     void solve(const SparseMatrix& matrix, std::span<double> b);

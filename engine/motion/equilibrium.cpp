@@ -27,7 +27,6 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
     stiffness_.assemble_elastic(points_, skeleton_, elastic_.matrix);
     undeformed_stiffness_ = elastic_.matrix.value;
     elastic_.solver->factorise(elastic_.matrix);
-    tangent_.solver->factorise(elastic_.matrix);  // the pivots of every tangent, so that none depends on those before it
 }
 
 EquilibriumOutcome Equilibrium::solve(const Loads& loads) {
