@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -27,33 +28,85 @@ double elevation(const Profile& profile, double x) {
 
 // --- grid lines ------------------------------------------------------------------------------------------------------
 
-/// x of the vertical grid lines: every vertex of every profile, and equal columns between them.
-std::vector<double> grid_lines(const SectionGround& section, const std::vector<const Profile*>& profiles) {
+/// Columns beside a bend of the terrain: `bend` wide there, wider by the ratio `growth` from one to the next, at most `widest`.
+struct ColumnWidths {
+    double bend, widest, growth;
+
+    /// How many columns there are within a distance of the bend: the integral of 1 / (bend + slope distance), slope = ln(growth).
+    [[nodiscard]] double columns(double distance) const {
+        const double graded = std::min(distance, graded_distance());
+        const double slope = std::log(growth);
+        const double near = slope > 0 ? std::log1p(slope * graded / bend) / slope : graded / bend;
+        return near + (distance - graded) / widest;
+    }
+
+    /// The distance within which there are so many columns.
+    [[nodiscard]] double distance(double count) const {
+        const double graded = columns(graded_distance());
+        const double slope = std::log(growth);
+        if (count > graded) return graded_distance() + (count - graded) * widest;
+        return slope > 0 ? bend * std::expm1(slope * count) / slope : bend * count;
+    }
+
+private:
+    [[nodiscard]] double graded_distance() const {
+        return growth > 1 ? (widest - bend) / std::log(growth) : std::numeric_limits<double>::infinity();
+    }
+};
+
+/// A place through which a grid line goes.
+struct GridVertex {
+    double x;
+    bool is_bend;
+};
+
+std::vector<GridVertex> grid_vertices(const SectionGround& section, const std::vector<const Profile*>& profiles) {
     const double left = section.terrain.front()[0];
     const double right = section.terrain.back()[0];
     const double near = 1e-9 * (right - left);
-    std::vector<double> vertices;
+    std::vector<GridVertex> vertices = {{left, false}, {right, false}};
     for (const Profile* profile : profiles) {
         for (const Place& place : *profile) {
-            if (place[0] > left + near && place[0] < right - near) vertices.push_back(place[0]);
+            if (place[0] > left + near && place[0] < right - near) vertices.push_back({place[0], profile == profiles.front()});
         }
     }
-    vertices.push_back(right);
-    std::sort(vertices.begin(), vertices.end());
-
-    std::vector<double> lines = {left};
-    for (const double vertex : vertices) {
-        const double from = lines.back();
-        if (vertex - from <= near) continue;
-        const double columns = std::ceil((vertex - from) / section.column_width - 1e-9);
-        if (!(columns < most_cells)) {
-            throw Error(Status::invalid_scene, "ground.section.columnWidth: " + number_text(section.column_width) +
-                                                   " m is too small for a section " + number_text(right - left) +
-                                                   " m wide");
+    std::stable_sort(vertices.begin(), vertices.end(), [](const GridVertex& a, const GridVertex& b) { return a.x < b.x; });
+    std::vector<GridVertex> apart;
+    for (const GridVertex& vertex : vertices) {
+        if (apart.empty() || vertex.x - apart.back().x > near) {
+            apart.push_back(vertex);
+        } else {
+            apart.back().is_bend |= vertex.is_bend;
         }
-        const auto count = std::max(1, static_cast<int32_t>(columns));
-        for (int32_t i = 1; i < count; ++i) lines.push_back(from + (vertex - from) * i / count);
-        lines.push_back(vertex);
+    }
+    return apart;
+}
+
+/// x of the vertical grid lines: every vertex of every profile, and columns between them, equal or graded towards bends.
+std::vector<double> grid_lines(const SectionGround& section, const std::vector<const Profile*>& profiles) {
+    const std::vector<GridVertex> vertices = grid_vertices(section, profiles);
+    const double bend = section.bend_column_width > 0 ? section.bend_column_width : section.column_width;
+    std::vector<double> lines = {vertices.front().x};
+    for (size_t v = 1; v < vertices.size(); ++v) {
+        const auto [from, bends_from] = vertices[v - 1];
+        const auto [to, bends_to] = vertices[v];
+        const ColumnWidths widths{bends_from || bends_to ? bend : section.column_width, section.column_width, section.growth};
+        const double length = to - from;
+        const bool bends_twice = bends_from && bends_to;
+        const double columns = bends_twice ? 2 * widths.columns(length / 2) : widths.columns(length);
+        const double count = std::max(1.0, std::ceil(columns - 1e-9));
+        if (!(count < most_cells)) {
+            const char* const entry = bend < section.column_width ? "bendColumnWidth" : "columnWidth";
+            throw Error(Status::invalid_scene, "ground.section." + std::string(entry) + ": " + number_text(bend) +
+                                                   " m is too small for a section " +
+                                                   number_text(vertices.back().x - vertices.front().x) + " m wide");
+        }
+        for (double i = 1; i < count; ++i) {
+            const double at = columns * i / count;
+            const bool from_left = bends_twice ? at <= columns / 2 : !bends_to;
+            lines.push_back(from_left ? from + widths.distance(at) : to - widths.distance(columns - at));
+        }
+        lines.push_back(to);
     }
     return lines;
 }
@@ -160,7 +213,7 @@ std::vector<int32_t> layer_rows(const SectionGround& section, const std::vector<
         throw Error(Status::invalid_scene, "ground.section: would have " +
                                                number_text(total * static_cast<double>(lines.size())) +
                                                " cells, more than " + number_text(most_cells) +
-                                               "; give columnWidth or the cell heights larger values");
+                                               "; give the column widths or the cell heights larger values");
     }
     return rows;
 }

@@ -115,6 +115,7 @@ void fields(auto& visit, Is<SectionGround> auto& section) {
     visit("gradedDepth", section.graded_depth);
     visit("growth", section.growth);
     visit.positive("largestCellHeight", section.largest_cell_height);
+    visit.positive("bendColumnWidth", section.bend_column_width);
 }
 
 void fields(auto& visit, Is<MeshGround> auto& mesh) {

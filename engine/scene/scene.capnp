@@ -295,6 +295,9 @@ struct SectionGround {
   # Ratio of a cell's height to that of the cell above it, below gradedDepth.
   largestCellHeight @7 :Float64 = nan $limits(unit = "m", low = 1e-4, high = 1e5);
   # Required, at least surfaceCellHeight.
+  bendColumnWidth @8 :Float64 = nan $limits(unit = "m", low = 1e-4, high = 1e5);
+  # Width of the columns beside a bend of the terrain, at most columnWidth; farther away they widen by the ratio `growth`.
+  # Left out: columnWidth.
 }
 
 struct SectionLayer {
