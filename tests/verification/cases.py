@@ -18,4 +18,6 @@ CASES = {
     **{name: functools.partial(engine_cases.rows, name) for name in ("footing_q4", "footing_t3", "patch", "order")},
     "slope_gentle": lambda: slopes.rows("slope_gentle"),
     "slope": lambda: slopes.rows("slope"),
+    "slope_triangles": slopes.triangles_rows,
+    "slope_failure": slopes.failure_rows,
 }

@@ -42,6 +42,10 @@ def engine_of(name):
     return talus.Engine(talus.Scene.from_file(str(SCENES / f"{name}.json")))
 
 
+def engine_from(scene):
+    return talus.Engine(talus.Scene.from_json(json.dumps(scene)))
+
+
 def scene_of(name):
     """A scene as a dict, to be changed."""
     return json.loads((SCENES / f"{name}.json").read_text())
