@@ -24,6 +24,7 @@ struct MeanPermeability {
 };
 
 /// fall: weight of a water column as high as the upper end lies above the lower one, Pa, >= 0.
-MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& upper, const LinkEnd& lower, double fall);
+MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& upper, const LinkEnd& lower,
+                                   double fall);
 
 }  // namespace talus
