@@ -8,46 +8,68 @@ namespace talus {
 namespace {
 constexpr double least_share = 0.5;
 
-// Of the pressures. Where k_r hardly changes, the difference of the potentials has lost its digits and Hermite's rule, of fourth order, has not.
-MeanPermeability integral_mean(const LinkEnd& a, const LinkEnd& b) {
+// 0 where it is drier than the chord, 1 on it, 2 where it is wet: the curves have a kink between two of them.
+int piece(const HydraulicTable& table, double pressure) {
+    return pressure > 0 ? 2 : pressure >= -table.chord() ? 1 : 0;
+}
+
+// Over the pressures. Where k_r hardly changes, the difference of the potentials has lost its digits and Hermite's rule, of fourth order, has not.
+MeanPermeability integral_mean(const HydraulicTable& table, const LinkEnd& a, const LinkEnd& b) {
     const double step = b.pressure - a.pressure;
     const double hardly = 0.01 * a.state.permeability;
-    if (std::abs(b.state.permeability - a.state.permeability) <= hardly && std::abs(step * a.state.permeability_slope) <= hardly &&
+    if (piece(table, a.pressure) == piece(table, b.pressure) &&
+        std::abs(b.state.permeability - a.state.permeability) <= hardly &&
+        std::abs(step * a.state.permeability_slope) <= hardly &&
         std::abs(step * b.state.permeability_slope) <= hardly) {
         const double mean = 0.5 * (a.state.permeability + b.state.permeability) -
                             (b.state.permeability_slope - a.state.permeability_slope) * step / 12.0;
         return {mean, 0.5 * a.state.permeability_slope, 0.5 * b.state.permeability_slope};
     }
-    const double mean = (b.state.potential - a.state.potential) / step;
+    const auto [less, more] = std::minmax(a.state.permeability, b.state.permeability);
+    const double mean = std::clamp((b.state.potential - a.state.potential) / step, less, more);
     return {mean, (mean - a.state.permeability) / step, (b.state.permeability - mean) / step};
 }
 
-// Cheap and certain: k_r nearly the same at both ends, not steep there, and what flows on the side of what falls that it must lie on.
-bool is_surely_monotone(const LinkEnd& upper, const LinkEnd& lower, double fall, double flow) {
-    constexpr double largest_ratio = 2.0;
-    constexpr double largest_peclet = 1.0;
-    const auto is_gentle = [&](const HydraulicState& end) { return fall * end.permeability_slope <= largest_peclet * end.permeability; };
-    const auto [less, more] = std::minmax(upper.state.permeability, lower.state.permeability);
-    const double excess = flow - fall * upper.state.permeability;
-    return more <= largest_ratio * less && is_gentle(upper.state) && is_gentle(lower.state) &&
-           (lower.pressure < upper.pressure ? excess >= 0 : excess <= 0);
+// The largest k_r' / k_r between two pressures: d(ln k_r)/d(ln s) grows with the suction in all curves, and the chord is steepest at its dry end.
+double steepest(const HydraulicTable& table, const LinkEnd& drier, const LinkEnd& wetter) {
+    const double chord = table.chord();
+    const double power =
+        std::max(-drier.pressure, chord) * drier.state.permeability_slope;  // d(ln k_r)/d(ln s), times k_r
+    double steepness =
+        drier.pressure < 0 ? power / (drier.state.permeability * std::max(-wetter.pressure, chord)) : 0.0;
+    if (wetter.pressure > -chord) {
+        const HydraulicState end = table.at(-chord);
+        steepness = std::max(steepness, end.permeability_slope / std::max(end.permeability, drier.state.permeability));
+    }
+    return steepness;
+}
+
+// Cheap and certain: k_r is nowhere between the ends so steep that the flow could turn.
+bool is_surely_monotone(const HydraulicTable& table, const LinkEnd& upper, const LinkEnd& lower, double fall) {
+    if (upper.state.permeability == lower.state.permeability) return true;
+    if (upper.pressure < lower.pressure) return fall * steepest(table, upper, lower) <= 2.0;
+    return 0.5 * fall * steepest(table, lower, upper) * upper.state.permeability <=
+           (1.0 - least_share) * lower.state.permeability;
 }
 
 // The flow from one upper pressure as a function of the lower one.
 class Downflow {
 public:
-    Downflow(const HydraulicTable& table, const LinkEnd& upper, double fall, double share) : table_(table), upper_(upper), fall_(fall), share_(share) {}
+    Downflow(const HydraulicTable& table, const LinkEnd& upper, double fall, double share)
+        : table_(table), upper_(upper), fall_(fall), share_(share) {}
 
     [[nodiscard]] LinkEnd at(double pressure) const { return {pressure, table_.at(pressure)}; }
-    [[nodiscard]] double flow(const LinkEnd& lower) const { return integral_mean(upper_, lower).value * head(lower) + share_ * lower.state.potential; }
+    [[nodiscard]] double flow(const LinkEnd& lower) const {
+        return integral_mean(table_, upper_, lower).value * head(lower) + share_ * lower.state.potential;
+    }
     /// By the upper pressure.
     [[nodiscard]] double slope(const LinkEnd& lower) const {
-        const MeanPermeability mean = integral_mean(upper_, lower);
+        const MeanPermeability mean = integral_mean(table_, upper_, lower);
         return mean.value + head(lower) * mean.slope_upper;
     }
     /// Whether the flow falls as the lower pressure rises.
     [[nodiscard]] bool is_monotone(const LinkEnd& lower) const {
-        const MeanPermeability mean = integral_mean(upper_, lower);
+        const MeanPermeability mean = integral_mean(table_, upper_, lower);
         return mean.value >= head(lower) * mean.slope_lower + share_ * lower.state.permeability;
     }
     [[nodiscard]] double head(const LinkEnd& lower) const { return upper_.pressure + fall_ - lower.pressure; }
@@ -70,47 +92,61 @@ double turning_pressure(const Downflow& downflow, double monotone, double turned
 
 }  // namespace
 
-MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& upper, const LinkEnd& lower, double fall) {
+MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& upper, const LinkEnd& lower,
+                                   double fall) {
     const double rise = lower.pressure - upper.pressure;
-    const MeanPermeability central = integral_mean(upper, lower);
+    const MeanPermeability central = integral_mean(table, upper, lower);
     const double head = fall - rise;
-    if (head <= 0 || is_surely_monotone(upper, lower, fall, central.value * head)) return central;
+    if (head <= 0 || is_surely_monotone(table, upper, lower, fall)) return central;
 
-    // Places from the upper pressure to the lower one, evenly apart in ln(suction), where the curves are straightest.
-    constexpr size_t places = 9;
-    std::array<double, places> place{};
-    const double from = std::log(std::max(-upper.pressure, table.chord()));
-    const double to = std::log(std::max(-lower.pressure, table.chord()));
+    // Evenly apart in ln(suction), where the curves are straightest, and on the chord, with its ends.
+    constexpr int intervals = 8;
+    constexpr int chord_intervals = 4;
+    std::array<double, intervals + chord_intervals + 2> place{};
+    size_t places = 0;
     const auto [driest, wettest] = std::minmax(upper.pressure, lower.pressure);
-    for (size_t i = 0; i < places; ++i) {
-        const double share = static_cast<double>(i) / static_cast<double>(places - 1);
-        place[i] = std::clamp(-std::exp(from + (to - from) * share), driest, wettest);
+    const auto add = [&, least = driest, most = wettest](double pressure) {
+        if (least < pressure && pressure < most) place[places++] = pressure;
+    };
+    const double chord = table.chord();
+    const double from = std::log(std::max(-upper.pressure, chord));
+    const double to = std::log(std::max(-lower.pressure, chord));
+    place[places++] = upper.pressure;
+    if (rise < 0)
+        for (int i = 0; i <= chord_intervals; ++i) add(-chord * i / chord_intervals);
+    for (int i = 1; i < intervals; ++i) add(-std::exp(from + (to - from) * i / intervals));
+    if (rise > 0) {
+        // From drier soil the flow is a rational function on the chord, which turns about its inflection if it does.
+        add(-chord);
+        const double slope = table.at(-chord).permeability_slope;
+        const double offset = upper.pressure * (1.0 + 0.5 * slope * upper.pressure) - upper.state.potential;
+        const double inflection = upper.pressure + std::cbrt(2.0 * offset * fall / slope);
+        if (upper.pressure < -chord && inflection > -chord && inflection < 0) add(inflection);
+        add(0.0);
     }
-    place.front() = upper.pressure;
-    place.back() = lower.pressure;
+    place[places++] = lower.pressure;
 
     const double share = rise < 0 ? least_share : 0.0;
     const Downflow downflow(table, upper, fall, share);
     const double sign = rise < 0 ? 1.0 : -1.0;  // drier below: the largest flow; wetter below: the least
-    size_t extreme = places - 1;
-    double extreme_flow = sign * downflow.flow(lower);
-    for (size_t i = 0; i + 1 < places; ++i) {
-        const double flow = sign * downflow.flow(downflow.at(place[i]));
-        if (flow <= extreme_flow) continue;
-        extreme = i;
-        extreme_flow = flow;
+    // Candidates are the upper end, turns on the way and the lower end.
+    bool was_monotone = downflow.is_monotone(upper);
+    double flow =
+        fall * upper.state.permeability + share * upper.state.potential;  // what falls from the upper end alone
+    double slope_upper = fall * upper.state.permeability_slope + share * upper.state.permeability;
+    for (size_t i = 1; i < places; ++i) {
+        const bool is_monotone = downflow.is_monotone(i + 1 < places ? downflow.at(place[i]) : lower);
+        if (was_monotone && !is_monotone) {
+            const LinkEnd turn = downflow.at(turning_pressure(downflow, place[i - 1], place[i]));
+            const double turn_flow = downflow.flow(turn);
+            if (sign * turn_flow > sign * flow) {
+                flow = turn_flow;
+                slope_upper = downflow.slope(turn);
+            }
+        }
+        was_monotone = is_monotone;
     }
-    if (extreme == places - 1 && downflow.is_monotone(lower)) return central;
-    double flow, slope_upper;
-    if (extreme == 0) {  // what falls from the upper end alone
-        flow = fall * upper.state.permeability + share * upper.state.potential;
-        slope_upper = fall * upper.state.permeability_slope + share * upper.state.permeability;
-    } else {
-        const size_t after = std::min(extreme + 1, places - 1);
-        const LinkEnd turning = downflow.at(turning_pressure(downflow, place[extreme - 1], place[after]));
-        flow = downflow.flow(turning);
-        slope_upper = downflow.slope(turning);
-    }
+    if (was_monotone && sign * downflow.flow(lower) >= sign * flow) return central;
     const double value = (flow - share * lower.state.potential) / head;
     return {value, (slope_upper - value) / head, (value - share * lower.state.permeability) / head};
 }

@@ -20,12 +20,15 @@ struct CellGeometry {
     int corners = 0;
     double volume = 0;
     std::array<double, 4> corner_volume{};
-    std::array<double, 4> conductance{};  ///< per edge (c, c + 1), integral of grad . K grad of its dual vector, m2/s (a column: m/s)
-    std::array<double, 4> crossing{};     ///< per corner, the same of the two dual vectors there, for head lost away from the corner
+    std::array<double, 4>
+        conductance{};  ///< per edge (c, c + 1), integral of grad . K grad of its dual vector, m2/s (a column: m/s)
+    std::array<double, 4>
+        crossing{};  ///< per corner, the same of the two dual vectors there, for head lost away from the corner
 };
 
 CellGeometry line_geometry(const Mesh& mesh, const int32_t* nodes, const Tensor& k) {
-    const double length = std::abs(mesh.position[static_cast<size_t>(nodes[1])] - mesh.position[static_cast<size_t>(nodes[0])]);
+    const double length =
+        std::abs(mesh.position[static_cast<size_t>(nodes[1])] - mesh.position[static_cast<size_t>(nodes[0])]);
     return {2, length, {0.5 * length, 0.5 * length}, {k.yy / length}, {}};
 }
 
@@ -37,7 +40,8 @@ void add_corner(CellGeometry& cell, int c, const Vector& to_next, const Vector& 
     const Vector dual_previous{-to_next[1] / det, to_next[0] / det};
     const double weight = share * det;
     cell.conductance[static_cast<size_t>(c)] += weight * contract(dual_next, k, dual_next);
-    cell.conductance[static_cast<size_t>((c + cell.corners - 1) % cell.corners)] += weight * contract(dual_previous, k, dual_previous);
+    cell.conductance[static_cast<size_t>((c + cell.corners - 1) % cell.corners)] +=
+        weight * contract(dual_previous, k, dual_previous);
     cell.crossing[static_cast<size_t>(c)] = weight * contract(dual_next, k, dual_previous);
 }
 
@@ -119,7 +123,8 @@ private:
 };
 
 size_t cell_corners(const Mesh& mesh, int32_t cell) {
-    return static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell) + 1] - mesh.cell_start[static_cast<size_t>(cell)]);
+    return static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell) + 1] -
+                               mesh.cell_start[static_cast<size_t>(cell)]);
 }
 
 void make_links(Network& network, const Mesh& mesh) {
@@ -129,7 +134,8 @@ void make_links(Network& network, const Mesh& mesh) {
         const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
         const size_t corners = cell_corners(mesh, cell);
         for (size_t c = 0; c < (corners == 2 ? 1 : corners); ++c)
-            network.corner_link[first + c] = numbers.of(network.corner_portion[first + c], network.corner_portion[first + (c + 1) % corners]);
+            network.corner_link[first + c] =
+                numbers.of(network.corner_portion[first + c], network.corner_portion[first + (c + 1) % corners]);
     }
 }
 
@@ -148,7 +154,8 @@ void make_crossings(Network& network, const Mesh& mesh, const Scene& scene) {
         for (size_t c = 0; c < corners; ++c) {
             if (!all_corners && std::abs(geometry.crossing[c]) < right_angle * largest) continue;
             network.corner_crossing[first + c] = static_cast<int32_t>(network.crossings.size());
-            network.crossings.push_back({network.corner_link[first + c], network.corner_link[first + (c + corners - 1) % corners]});
+            network.crossings.push_back(
+                {network.corner_link[first + c], network.corner_link[first + (c + corners - 1) % corners]});
         }
     }
 }
@@ -160,7 +167,8 @@ void make_neighbours(Network& network, const Mesh& mesh) {
         const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
         for (size_t i = 0; i < cell_corners(mesh, cell); ++i)
             for (size_t j = i + 1; j < cell_corners(mesh, cell); ++j)
-                network.pair_neighbours.push_back(numbers.of(network.corner_portion[first + i], network.corner_portion[first + j]));
+                network.pair_neighbours.push_back(
+                    numbers.of(network.corner_portion[first + i], network.corner_portion[first + j]));
         network.pair_start.push_back(static_cast<int32_t>(network.pair_neighbours.size()));
     }
 }
@@ -171,7 +179,8 @@ Tensor conductivity_tensor(const Conductivity& conductivity) {
     const double angle = conductivity.dip * std::numbers::pi / 180.0;
     const double c = std::cos(angle);
     const double s = std::sin(angle);
-    return {conductivity.along * c * c + conductivity.across * s * s, (conductivity.along - conductivity.across) * c * s,
+    return {conductivity.along * c * c + conductivity.across * s * s,
+            (conductivity.along - conductivity.across) * c * s,
             conductivity.along * s * s + conductivity.across * c * c};
 }
 
@@ -210,7 +219,8 @@ void refresh_geometry(Network& network, const Mesh& mesh, const Scene& scene,
             const int32_t here = network.corner_portion[first + c];
             const bool away_a = network.links[static_cast<size_t>(links.link_a)].portion_a == here;
             const bool away_b = network.links[static_cast<size_t>(links.link_b)].portion_a == here;
-            network.cross_transmissibility[static_cast<size_t>(crossing)] = (away_a == away_b ? factor : -factor) * geometry.crossing[c];
+            network.cross_transmissibility[static_cast<size_t>(crossing)] =
+                (away_a == away_b ? factor : -factor) * geometry.crossing[c];
         }
     }
     network.fall.resize(network.links.size());

@@ -45,14 +45,16 @@ struct Network {
     std::vector<int32_t> corner_link;      ///< likewise: the link from the corner to the next one of the cell; -1: none
     std::vector<int32_t> corner_crossing;  ///< likewise: the crossing of the two links that meet there; -1: none
     std::vector<int32_t> pair_start;       ///< cells + 1 offsets into pair_neighbours; empty: rigid
-    std::vector<int32_t> pair_neighbours;  ///< the neighbours of each pair (i < j) of a cell's corners, in lexicographic order
+    std::vector<int32_t>
+        pair_neighbours;  ///< the neighbours of each pair (i < j) of a cell's corners, in lexicographic order
 
     // Geometry, refreshed when the ground moves
     std::vector<double>
         corner_volume;  ///< like corner_portion: m3 of ground (per metre of thickness, or per m2 in a column)
     std::vector<double> transmissibility;  ///< per link, m3/(s Pa)
     std::vector<double> fall;              ///< per link, Pa: weight of a water column as high as a lies above b
-    std::vector<double> cross_transmissibility;  ///< per crossing, flow a -> b of one link per head lost along the other, m3/(s Pa)
+    std::vector<double>
+        cross_transmissibility;  ///< per crossing, flow a -> b of one link per head lost along the other, m3/(s Pa)
 };
 
 /// A symmetric tensor in the plane.

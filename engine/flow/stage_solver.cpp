@@ -12,7 +12,7 @@ constexpr int most_steady_iterations = 100;
 constexpr int most_halvings = 6;
 constexpr double good_contraction = 0.2;  // of the residuals in one iteration, with which the factors at hand are kept
 constexpr double like_steps = 0.2;        // relative difference of two time steps that may share factors
-constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more leaves nothing to gain
+constexpr double round_off = 1e-10;       // a whole Newton step that changes no pressure by more leaves nothing to gain
 
 double largest_relative_change(std::span<const double> before, std::span<const double> after) {
     double largest = 0;
@@ -88,7 +88,8 @@ bool StageSolver::factorise(double step) {
 
 bool StageSolver::solve_steady(double tolerance, std::span<double> pressure) {
     const auto& held = system_.boundaries.held;
-    for (size_t h = 0; h < held.size(); ++h) pressure[static_cast<size_t>(held[h].node)] = system_.forcing.held[h].at(0.0);
+    for (size_t h = 0; h < held.size(); ++h)
+        pressure[static_cast<size_t>(held[h].node)] = system_.forcing.held[h].at(0.0);
     const std::vector<double> nothing(residual_.size(), 0.0);
     const auto imbalance = [&](std::span<const double> at) {
         system_.evaluate(0.0, at);
@@ -109,7 +110,8 @@ bool StageSolver::solve_steady(double tolerance, std::span<double> pressure) {
         const double merit = merit_;
         double length = 1.0;
         for (int halving = 0; halving <= most_halvings; ++halving, length *= 0.5) {
-            for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = system_.moved_steadily(i, pressure[i], length * change_[i]);
+            for (size_t i = 0; i < trial_.size(); ++i)
+                trial_[i] = system_.moved_steadily(i, pressure[i], length * change_[i]);
             error = imbalance(trial_);
             if (merit_ < merit) break;
         }

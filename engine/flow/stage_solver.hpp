@@ -31,7 +31,7 @@ private:
     SparseMatrix matrix_;
     KluSolver solver_;
     std::vector<double> residual_, change_, trial_;
-    double merit_ = 0;  // sum of the absolute residuals, m3
+    double merit_ = 0;            // sum of the absolute residuals, m3
     double factorised_step_ = 0;  // s, of the factors at hand; 0: none
     int64_t iterations_ = 0;
 };

@@ -47,8 +47,8 @@ SparseMatrix FlowSystem::make_matrix() {
     SparseMatrix matrix = symmetric_pattern(node_count(), pairs);
 
     const auto places = [&](std::array<int32_t, 2> rows, std::array<int32_t, 2> columns) {
-        return Places{matrix.place(rows[0], columns[0]), matrix.place(rows[0], columns[1]), matrix.place(rows[1], columns[0]),
-                      matrix.place(rows[1], columns[1])};
+        return Places{matrix.place(rows[0], columns[0]), matrix.place(rows[0], columns[1]),
+                      matrix.place(rows[1], columns[0]), matrix.place(rows[1], columns[1])};
     };
     link_places_.clear();
     neighbour_places_.clear();
@@ -139,8 +139,10 @@ void FlowSystem::evaluate_links(std::span<const double> pressure) {
     for (size_t l = 0; l < network.links.size(); ++l) {
         const Portion& a = network.portions[static_cast<size_t>(network.links[l].portion_a)];
         const Portion& b = network.portions[static_cast<size_t>(network.links[l].portion_b)];
-        const LinkEnd end_a{pressure[static_cast<size_t>(a.node)], state_[static_cast<size_t>(network.links[l].portion_a)]};
-        const LinkEnd end_b{pressure[static_cast<size_t>(b.node)], state_[static_cast<size_t>(network.links[l].portion_b)]};
+        const LinkEnd end_a{pressure[static_cast<size_t>(a.node)],
+                            state_[static_cast<size_t>(network.links[l].portion_a)]};
+        const LinkEnd end_b{pressure[static_cast<size_t>(b.node)],
+                            state_[static_cast<size_t>(network.links[l].portion_b)]};
         const HydraulicTable& table = tables_[static_cast<size_t>(a.soil)];
         LinkState& link = link_state_[l];
         link.head = end_a.pressure - end_b.pressure + network.fall[l];
@@ -164,7 +166,8 @@ void FlowSystem::evaluate_crossings() {
         const auto b = static_cast<size_t>(network.crossings[c].link_b);
         const LinkState& link_a = link_state_[a];
         const LinkState& link_b = link_state_[b];
-        const double conductance = network.cross_transmissibility[c] * std::sqrt(link_a.permeability * link_b.permeability);
+        const double conductance =
+            network.cross_transmissibility[c] * std::sqrt(link_a.permeability * link_b.permeability);
         add_flow(network.links[a], conductance * link_b.head);
         add_flow(network.links[b], conductance * link_a.head);
     }
@@ -242,7 +245,9 @@ void FlowSystem::assemble_links(double step, SparseMatrix& matrix) const {
         const double conductance = step * network.transmissibility[l] * link.permeability;
         const double steepness = step * network.transmissibility[l] * link.head;
         add_exchange(network.links[l], link_places_[l],
-                     {conductance + steepness * link.permeability_slope[0], steepness * link.permeability_slope[1] - conductance}, matrix);
+                     {conductance + steepness * link.permeability_slope[0],
+                      steepness * link.permeability_slope[1] - conductance},
+                     matrix);
     }
 }
 
@@ -264,13 +269,16 @@ void FlowSystem::assemble_crossings(double step, SparseMatrix& matrix) const {
         const auto& slope_b = link_b.permeability_slope;
         add_exchange(network.links[a], link_places_[a], own(0.0, steepness_a * link_b.head, slope_a), matrix);
         add_exchange(network.links[b], link_places_[b], own(0.0, steepness_b * link_a.head, slope_b), matrix);
-        add_exchange(network.links[a], cross_places_[2 * c], own(conductance, steepness_b * link_b.head, slope_b), matrix);
-        add_exchange(network.links[b], cross_places_[2 * c + 1], own(conductance, steepness_a * link_a.head, slope_a), matrix);
+        add_exchange(network.links[a], cross_places_[2 * c], own(conductance, steepness_b * link_b.head, slope_b),
+                     matrix);
+        add_exchange(network.links[b], cross_places_[2 * c + 1], own(conductance, steepness_a * link_a.head, slope_a),
+                     matrix);
     }
 }
 
 // What leaves the first end of a link and enters the second, by two pressures.
-void FlowSystem::add_exchange(const Link& link, const Places& place, std::array<double, 2> slope, SparseMatrix& matrix) const {
+void FlowSystem::add_exchange(const Link& link, const Places& place, std::array<double, 2> slope,
+                              SparseMatrix& matrix) const {
     if (held_node_[static_cast<size_t>(network.portions[static_cast<size_t>(link.portion_a)].node)] == 0) {
         matrix.value[static_cast<size_t>(place.aa)] += slope[0];
         matrix.value[static_cast<size_t>(place.ab)] += slope[1];
@@ -288,7 +296,8 @@ double FlowSystem::imbalance() const {
         const auto b = static_cast<size_t>(network.links[l].portion_b);
         const double driving = std::abs(link_state_[l].head - network.fall[l]) + std::abs(network.fall[l]);
         for (const size_t end : {a, b})
-            passing[static_cast<size_t>(network.portions[end].node)] += network.transmissibility[l] * link_state_[l].permeability * driving;
+            passing[static_cast<size_t>(network.portions[end].node)] +=
+                network.transmissibility[l] * link_state_[l].permeability * driving;
     }
     double largest = 0;
     for (size_t i = 0; i < passing.size(); ++i)

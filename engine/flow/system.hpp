@@ -102,9 +102,9 @@ private:
     std::vector<int32_t> soil_of_node_;  // whose table tells wet from dry: that of the largest portion
 
     // At the last evaluate()
-    std::vector<HydraulicState> state_;                    // per portion
-    std::vector<double> stored_slope_;                     // per node, by its own pressure
-    std::vector<double> inflow_slope_;                     // per node, by its own pressure, of the surface
+    std::vector<HydraulicState> state_;  // per portion
+    std::vector<double> stored_slope_;   // per node, by its own pressure
+    std::vector<double> inflow_slope_;   // per node, by its own pressure, of the surface
     struct LinkState {
         double head;          ///< lost from a to b, Pa
         double permeability;  ///< mean k_r, -

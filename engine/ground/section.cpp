@@ -67,10 +67,12 @@ std::vector<GridVertex> grid_vertices(const SectionGround& section, const std::v
     std::vector<GridVertex> vertices = {{left, false}, {right, false}};
     for (const Profile* profile : profiles) {
         for (const Place& place : *profile) {
-            if (place[0] > left + near && place[0] < right - near) vertices.push_back({place[0], profile == profiles.front()});
+            if (place[0] > left + near && place[0] < right - near)
+                vertices.push_back({place[0], profile == profiles.front()});
         }
     }
-    std::stable_sort(vertices.begin(), vertices.end(), [](const GridVertex& a, const GridVertex& b) { return a.x < b.x; });
+    std::stable_sort(vertices.begin(), vertices.end(),
+                     [](const GridVertex& a, const GridVertex& b) { return a.x < b.x; });
     std::vector<GridVertex> apart;
     for (const GridVertex& vertex : vertices) {
         if (apart.empty() || vertex.x - apart.back().x > near) {
@@ -90,7 +92,8 @@ std::vector<double> grid_lines(const SectionGround& section, const std::vector<c
     for (size_t v = 1; v < vertices.size(); ++v) {
         const auto [from, bends_from] = vertices[v - 1];
         const auto [to, bends_to] = vertices[v];
-        const ColumnWidths widths{bends_from || bends_to ? bend : section.column_width, section.column_width, section.growth};
+        const ColumnWidths widths{bends_from || bends_to ? bend : section.column_width, section.column_width,
+                                  section.growth};
         const double length = to - from;
         const bool bends_twice = bends_from && bends_to;
         const double columns = bends_twice ? 2 * widths.columns(length / 2) : widths.columns(length);

@@ -68,7 +68,8 @@ KluSolver::KluSolver(const SparseMatrix& matrix) : handles_(std::make_unique<Han
     symbolic = klu_analyze(matrix.size(), start, row, &common);
     std::vector<double> dominant(matrix.row.size(), -1.0);
     for (int32_t j = 0; j < matrix.size(); ++j) {
-        const int32_t entries = matrix.column_start[static_cast<size_t>(j) + 1] - matrix.column_start[static_cast<size_t>(j)];
+        const int32_t entries =
+            matrix.column_start[static_cast<size_t>(j) + 1] - matrix.column_start[static_cast<size_t>(j)];
         dominant[static_cast<size_t>(matrix.place(j, j))] = entries;
     }
     if (symbolic != nullptr) diagonal = klu_factor(start, row, dominant.data(), symbolic, &common);

@@ -195,3 +195,56 @@ TEST_CASE("sections with too many cells are refused before they are made") {
     scene.ground.section.surface_cell_height = 1e-3;
     CHECK(mentions(build_failure(scene), "more than"));
 }
+
+namespace {
+
+/// Widths of the columns between two places of the slope's surface.
+std::vector<double> column_widths(const Mesh& mesh, double from, double to) {
+    std::vector<double> x;
+    for (const Facet& facet : mesh.facets) {
+        if (mesh.sides[static_cast<size_t>(facet.side)] != "surface") continue;
+        for (const int32_t node : {facet.node_a, facet.node_b})
+            if (const double at = node_place(mesh, node)[0]; at > from - 1e-9 && at < to + 1e-9) x.push_back(at);
+    }
+    std::sort(x.begin(), x.end());
+    x.erase(std::unique(x.begin(), x.end(), [](double a, double b) { return b - a < 1e-9; }), x.end());
+    std::vector<double> widths;
+    for (size_t i = 1; i < x.size(); ++i) widths.push_back(x[i] - x[i - 1]);
+    return widths;
+}
+
+}  // namespace
+
+TEST_CASE("columns are narrow beside the bends of the terrain and widen away from them") {
+    Scene scene = slope_scene();
+    scene.ground.section.column_width = 1.5;
+    scene.ground.section.bend_column_width = 0.3;
+    const Mesh mesh = build_mesh(scene);
+    check_conforming(mesh);
+    const double growth = scene.ground.section.growth;
+    for (const auto& [from, to] : {std::array{0., 20.}, {20., 40.}, {40., 60.}}) {
+        std::vector<double> widths = column_widths(mesh, from, to);
+        if (from == 0) std::reverse(widths.begin(), widths.end());  // from the bend at 20 outwards
+        REQUIRE(widths.size() > 10);
+        // The first width is the mean over it of one that grows from bendColumnWidth on; whole numbers of columns make all a bit narrower.
+        CHECK(widths.front() > 0.9 * 0.3);
+        CHECK(widths.front() < growth * 0.3);
+        for (size_t i = 0; i < widths.size(); ++i) {
+            CHECK(widths[i] <= 1.5 * (1 + 1e-12));
+            if (i > 0) CHECK(widths[i] <= growth * widths[i - 1] * (1 + 1e-9));
+        }
+        CHECK(*std::max_element(widths.begin(), widths.end()) > 1.2);
+        if (from == 20) {
+            for (size_t i = 0; i < widths.size(); ++i)
+                CHECK(widths[i] == doctest::Approx(widths[widths.size() - 1 - i]).epsilon(1e-9));
+        }
+    }
+}
+
+TEST_CASE("without a width at the bends, or with the columns' own, columns are equal") {
+    Scene scene = slope_scene();
+    const Mesh plain = build_mesh(scene);
+    scene.ground.section.bend_column_width = scene.ground.section.column_width;
+    CHECK(build_mesh(scene).position == plain.position);
+    for (const double width : column_widths(plain, 0, 60)) CHECK(width == doctest::Approx(1).epsilon(1e-9));
+}
