@@ -18,7 +18,7 @@ WALL_BOUND = 120.0  # s: a run that takes longer is stopped
 LEAST_MEASURED = 1.0  # s: shorter runs are repeated until they add up to this,
 MOST_REPEATS = 5  # but no more than this, and the quickest counts
 DEFAULT_TOLERANCE = 1e-3  # of a scene that says none, docs/scenes.md
-SECTION_LENGTHS = ("columnWidth", "surfaceCellHeight", "largestCellHeight")
+SECTION_LENGTHS = ("columnWidth", "bendColumnWidth", "surfaceCellHeight", "largestCellHeight")
 
 
 # --- settings ---
