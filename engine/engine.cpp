@@ -22,20 +22,25 @@ std::shared_ptr<const Scene> validated(std::shared_ptr<const Scene> scene) {
 
 size_t checked_index(int32_t index, size_t count, const char* what) {
     if (index >= 0 && static_cast<size_t>(index) < count) return static_cast<size_t>(index);
-    throw Error(Status::invalid_argument, std::string(what) + " is " + std::to_string(index) + ": the scene has " + std::to_string(count) + " of them");
+    throw Error(Status::invalid_argument, std::string(what) + " is " + std::to_string(index) + ": the scene has " +
+                                              std::to_string(count) + " of them");
 }
 
 void check_series(const std::string& what, std::span<const double> time, std::span<const double> value, double now) {
     if (time.empty() || time.size() != value.size())
-        throw Error(Status::invalid_argument, what + ": " + std::to_string(time.size()) + " times and " + std::to_string(value.size()) +
+        throw Error(Status::invalid_argument, what + ": " + std::to_string(time.size()) + " times and " +
+                                                  std::to_string(value.size()) +
                                                   " values; must be as many, and one at least");
     for (size_t k = 0; k < time.size(); ++k) {
         const std::string place = what + ": time[" + std::to_string(k) + "] = " + value_text(time[k]) + " s";
         if (!std::isfinite(time[k])) throw Error(Status::invalid_argument, place + " must be finite");
-        if (k == 0 && time[k] < now) throw Error(Status::invalid_argument, place + " must not lie before now, " + value_text(now) + " s");
-        if (k > 0 && time[k] <= time[k - 1]) throw Error(Status::invalid_argument, place + " must be after time[" + std::to_string(k - 1) + "]");
+        if (k == 0 && time[k] < now)
+            throw Error(Status::invalid_argument, place + " must not lie before now, " + value_text(now) + " s");
+        if (k > 0 && time[k] <= time[k - 1])
+            throw Error(Status::invalid_argument, place + " must be after time[" + std::to_string(k - 1) + "]");
         if (!std::isfinite(value[k]))
-            throw Error(Status::invalid_argument, what + ": value[" + std::to_string(k) + "] = " + value_text(value[k]) + " must be finite");
+            throw Error(Status::invalid_argument,
+                        what + ": value[" + std::to_string(k) + "] = " + value_text(value[k]) + " must be finite");
     }
 }
 
@@ -70,7 +75,8 @@ std::string event_message(const Happening& happening) {
         case HappeningKind::ponding_started: return "water stands on the surface or runs off" + when + where;
         case HappeningKind::ponding_ended: return "no more water stands on the surface" + when;
         case HappeningKind::seepage_started: return "water comes out of the surface" + when + where;
-        case HappeningKind::loss_of_equilibrium: return "no equilibrium exists any more: the ground fails" + when + where;
+        case HappeningKind::loss_of_equilibrium:
+            return "no equilibrium exists any more: the ground fails" + when + where;
         case HappeningKind::rain_ended: return "the rain series ended" + when + "; its last rate is held";
     }
     return {};
@@ -82,8 +88,8 @@ void check_boundaries_touch(const Simulation& simulation, const Scene& scene) {
     for (size_t b = 0; b < scene.boundaries.size(); ++b) {
         const auto touches = [&](const Facet& facet) { return covers(scene.boundaries[b], mesh, facet); };
         if (std::any_of(mesh.facets.begin(), mesh.facets.end(), touches)) continue;
-        untouched += (untouched.empty() ? "" : "\n") + item_path("boundaries", b) + ": no edge of the ground lies on this part of side " +
-                     scene.boundaries[b].side;
+        untouched += (untouched.empty() ? "" : "\n") + item_path("boundaries", b) +
+                     ": no edge of the ground lies on this part of side " + scene.boundaries[b].side;
     }
     if (!untouched.empty()) throw Error(Status::invalid_scene, untouched);
 }
@@ -101,8 +107,10 @@ Engine::State::State(std::shared_ptr<const Scene> scene_in, Options options_in)
         const auto [x, y] = scene->probes[k].place;
         const CellPlace cell_place = locator.locate(x, y);
         if (cell_place.cell < 0)
-            throw Error(Status::invalid_scene, item_path("probes", k) + ".place = (" + value_text(x) + ", " + value_text(y) + ") m: must lie in the ground");
-        probes.push_back({scene->probes[k].name, {x, y}, cell_place, std::vector<std::vector<double>>(quantities.size())});
+            throw Error(Status::invalid_scene, item_path("probes", k) + ".place = (" + value_text(x) + ", " +
+                                                   value_text(y) + ") m: must lie in the ground");
+        probes.push_back(
+            {scene->probes[k].name, {x, y}, cell_place, std::vector<std::vector<double>>(quantities.size())});
     }
     record_probes();
     report.regime = Regime::quasi_static;
@@ -111,7 +119,8 @@ Engine::State::State(std::shared_ptr<const Scene> scene_in, Options options_in)
     description = describe();
 }
 
-Engine::Engine(std::shared_ptr<const Scene> scene, Options options) : state_(std::make_unique<State>(std::move(scene), std::move(options))) {}
+Engine::Engine(std::shared_ptr<const Scene> scene, Options options)
+    : state_(std::make_unique<State>(std::move(scene), std::move(options))) {}
 
 Engine::~Engine() = default;
 
@@ -121,7 +130,8 @@ const std::string& Engine::describe() const { return state_->description; }
 
 int32_t Engine::zone(std::string_view name) const {
     const auto& zones = state_->scene->surface.zones;
-    const auto found = std::find_if(zones.begin(), zones.end(), [&](const RainZone& zone) { return zone.name == name; });
+    const auto found =
+        std::find_if(zones.begin(), zones.end(), [&](const RainZone& zone) { return zone.name == name; });
     if (found == zones.end()) throw Error(Status::unknown_field, "no rain zone is named '" + std::string(name) + "'");
     return static_cast<int32_t>(found - zones.begin());
 }
@@ -132,8 +142,9 @@ void Engine::push_rain(int32_t zone, std::span<const double> time, std::span<con
     check_series(what, time, rate, this->time());
     for (size_t k = 0; k < rate.size(); ++k) {
         if (rate[k] >= 0 && rate[k] <= largest_rain) continue;
-        throw Error(Status::invalid_argument, what + ": rate[" + std::to_string(k) + "] = " + value_text(rate[k]) + " m/s must be between 0 and " +
-                                                  value_text(largest_rain) + (rate[k] > 0 ? " (mm/h given as m/s? 1 mm/h is 2.78e-7 m/s)" : ""));
+        throw Error(Status::invalid_argument, what + ": rate[" + std::to_string(k) + "] = " + value_text(rate[k]) +
+                                                  " m/s must be between 0 and " + value_text(largest_rain) +
+                                                  (rate[k] > 0 ? " (mm/h given as m/s? 1 mm/h is 2.78e-7 m/s)" : ""));
     }
     state_->simulation.forcing.push_rain(index, time, rate);
 }
@@ -145,8 +156,10 @@ void Engine::set_rain(int32_t zone, double rate) {
 
 int32_t Engine::boundary(std::string_view name) const {
     const auto& boundaries = state_->scene->boundaries;
-    const auto found = std::find_if(boundaries.begin(), boundaries.end(), [&](const Boundary& boundary) { return boundary.name == name; });
-    if (found == boundaries.end()) throw Error(Status::unknown_field, "no boundary is named '" + std::string(name) + "'");
+    const auto found = std::find_if(boundaries.begin(), boundaries.end(),
+                                    [&](const Boundary& boundary) { return boundary.name == name; });
+    if (found == boundaries.end())
+        throw Error(Status::unknown_field, "no boundary is named '" + std::string(name) + "'");
     return static_cast<int32_t>(found - boundaries.begin());
 }
 
@@ -155,22 +168,28 @@ void Engine::push_flow_value(int32_t boundary, std::span<const double> time, std
     const size_t index = checked_index(boundary, boundaries.size(), "boundary");
     const std::string what = "flow value of boundary '" + boundaries[index].name + "'";
     const FlowCondition flow = boundaries[index].flow;
-    const bool takes = flow == FlowCondition::pressure || flow == FlowCondition::hydrostatic || flow == FlowCondition::flux;
+    const bool takes =
+        flow == FlowCondition::pressure || flow == FlowCondition::hydrostatic || flow == FlowCondition::flux;
     if (!boundaries[index].has_flow || !takes || !state_->scene->physics.water)
-        throw Error(Status::invalid_argument, what + ": it has none; only pressure, hydrostatic and flux conditions take values in time");
+        throw Error(Status::invalid_argument,
+                    what + ": it has none; only pressure, hydrostatic and flux conditions take values in time");
     check_series(what, time, value, this->time());
     state_->simulation.forcing.push_flow_value(index, time, value);
 }
 
-void Engine::push_motion_value(int32_t boundary, int32_t component, std::span<const double> time, std::span<const double> value) {
+void Engine::push_motion_value(int32_t boundary, int32_t component, std::span<const double> time,
+                               std::span<const double> value) {
     const auto& boundaries = state_->scene->boundaries;
     const size_t index = checked_index(boundary, boundaries.size(), "boundary");
     const std::string what = "motion value of boundary '" + boundaries[index].name + "'";
     if (component < 0 || component > 1)
-        throw Error(Status::invalid_argument, what + ": component is " + std::to_string(component) + ": must be 0 (x) or 1 (y)");
+        throw Error(Status::invalid_argument,
+                    what + ": component is " + std::to_string(component) + ": must be 0 (x) or 1 (y)");
     const auto axis = static_cast<size_t>(component);
     if (!state_->scene->physics.deforming || !state_->simulation.forcing.has_motion_value(index, axis))
-        throw Error(Status::invalid_argument, what + ": it has none in this direction; only displacements and tractions of the scene change in time");
+        throw Error(
+            Status::invalid_argument,
+            what + ": it has none in this direction; only displacements and tractions of the scene change in time");
     check_series(what, time, value, this->time());
     state_->simulation.forcing.push_motion_value(index, axis, time, value);
 }
@@ -178,7 +197,8 @@ void Engine::push_motion_value(int32_t boundary, int32_t component, std::span<co
 // --- step ------------------------------------------------------------------------------------------------------------
 
 Status Engine::step(double dt, StepReport& report) {
-    if (!(dt > 0) || !std::isfinite(dt)) throw Error(Status::invalid_argument, "dt = " + value_text(dt) + " s: must be positive and finite");
+    if (!(dt > 0) || !std::isfinite(dt))
+        throw Error(Status::invalid_argument, "dt = " + value_text(dt) + " s: must be positive and finite");
     return advance_to(time() + dt, report);
 }
 
@@ -188,7 +208,8 @@ Status Engine::advance_to(double until, StepReport& report) {
     constexpr double longest_step = 1e11;  // s: three thousand years
     if (!(until > from) || !(until - from < longest_step))
         throw Error(Status::invalid_argument, "a step from " + value_text(from) + " s to " + value_text(until) +
-                                                  " s: must go forward, by less than " + value_text(longest_step) + " s");
+                                                  " s: must go forward, by less than " + value_text(longest_step) +
+                                                  " s");
     const auto start = std::chrono::steady_clock::now();
     const GroundState before = state.simulation.save();
     const FlowStatistics flow_before = state.simulation.flow_statistics();
@@ -227,7 +248,8 @@ Status Engine::advance_to(double until, StepReport& report) {
     last.coupling_iterations = counts.exchange_iterations;
     last.motion_iterations = counts.motion_iterations;
     state.report_water(last.water);
-    last.largest_displacement = largest_length(state.simulation.state().displacement, state.simulation.mesh().dimension);
+    last.largest_displacement =
+        largest_length(state.simulation.state().displacement, state.simulation.mesh().dimension);
     last.largest_velocity = largest_length(state.simulation.state().velocity, state.simulation.mesh().dimension);
     last.least_factor_of_safety = state.simulation.least_factor_of_safety();
     last.seconds_flow = counts.seconds_flow;
@@ -255,7 +277,8 @@ void Engine::State::report_water(WaterBalance& water) const {
 
 void Engine::State::tell_happenings() {
     for (const Happening& happening : simulation.happenings) {
-        events.push_back({event_kind(happening.kind), happening.time, happening.place, happening.value, event_message(happening)});
+        events.push_back(
+            {event_kind(happening.kind), happening.time, happening.place, happening.value, event_message(happening)});
         if (options.log) options.log(2, events.back().message);
     }
 }
@@ -275,7 +298,8 @@ const Scene& Engine::scene() const { return *state_->scene; }
 bool Engine::sample(std::string_view field, std::span<const double> places, std::span<double> values) const {
     const FieldView view = state_->view(field);
     if (view.location == Location::mesh || view.type != DataType::float64)
-        throw Error(Status::invalid_argument, "field '" + std::string(field) + "' cannot be sampled: it is not a field over the ground");
+        throw Error(Status::invalid_argument,
+                    "field '" + std::string(field) + "' cannot be sampled: it is not a field over the ground");
     const auto dimension = static_cast<size_t>(state_->simulation.mesh().dimension);
     const auto components = static_cast<size_t>(view.components);
     bool all_inside = true;
@@ -295,15 +319,18 @@ bool Engine::sample(std::string_view field, std::span<const double> places, std:
 }
 
 int32_t Engine::probe(std::string_view name) const {
-    const auto found = std::find_if(state_->probes.begin(), state_->probes.end(), [&](const ProbeTrack& probe) { return probe.name == name; });
-    if (found == state_->probes.end()) throw Error(Status::unknown_field, "no probe is named '" + std::string(name) + "'");
+    const auto found = std::find_if(state_->probes.begin(), state_->probes.end(),
+                                    [&](const ProbeTrack& probe) { return probe.name == name; });
+    if (found == state_->probes.end())
+        throw Error(Status::unknown_field, "no probe is named '" + std::string(name) + "'");
     return static_cast<int32_t>(found - state_->probes.begin());
 }
 
 int32_t Engine::add_probe(const std::string& name, Place place) {
     const CellPlace cell_place = state_->locator.locate(place[0], place[1]);
     if (cell_place.cell < 0)
-        throw Error(Status::invalid_argument, "probe '" + name + "' at (" + value_text(place[0]) + ", " + value_text(place[1]) + ") m: must lie in the ground");
+        throw Error(Status::invalid_argument, "probe '" + name + "' at (" + value_text(place[0]) + ", " +
+                                                  value_text(place[1]) + ") m: must lie in the ground");
     ProbeTrack probe{name, place, cell_place, std::vector<std::vector<double>>(state_->quantities.size())};
     const std::vector<double> unknown(state_->probe_times.size() - 1, std::numeric_limits<double>::quiet_NaN());
     for (auto& history : probe.history) history = unknown;
@@ -318,7 +345,8 @@ std::span<const double> Engine::probe_history(int32_t probe, std::string_view qu
     const size_t index = checked_index(probe, state_->probes.size(), "probe");
     const auto found = std::find(state_->quantities.begin(), state_->quantities.end(), quantity);
     if (found == state_->quantities.end())
-        throw Error(Status::unknown_field, "probes record no '" + std::string(quantity) + "'; they record " + joined(state_->quantities));
+        throw Error(Status::unknown_field,
+                    "probes record no '" + std::string(quantity) + "'; they record " + joined(state_->quantities));
     return state_->probes[index].history[static_cast<size_t>(found - state_->quantities.begin())];
 }
 
@@ -334,10 +362,11 @@ uint64_t Engine::hash() const {
     };
     const GroundState& ground = state_->simulation.state();
     mix({ground.time, ground.exchange_step, ground.flow.substep});
-    for (const auto* field : {&ground.node_position, &ground.displacement, &ground.velocity, &ground.flow.pressure, &ground.flow.stored,
-                              &ground.pore_volume, &ground.flow_pore_volume, &ground.pore_volume_rate, &ground.pore_stress_rate,
-                              &ground.points.position, &ground.points.volume, &ground.points.displacement, &ground.points.skeleton_stress,
-                              &ground.points.strain, &ground.points.plastic_strain, &ground.points.mobilised_strength})
+    for (const auto* field :
+         {&ground.node_position, &ground.displacement, &ground.velocity, &ground.flow.pressure, &ground.flow.stored,
+          &ground.pore_volume, &ground.flow_pore_volume, &ground.pore_volume_rate, &ground.pore_stress_rate,
+          &ground.points.position, &ground.points.volume, &ground.points.displacement, &ground.points.skeleton_stress,
+          &ground.points.strain, &ground.points.plastic_strain, &ground.points.mobilised_strength})
         mix(*field);
     mix({ground.flow.totals.begin(), ground.flow.totals.end()});
     return hash;

@@ -38,24 +38,24 @@ enum class Regime : int32_t {
 struct StepReport {
     double time = 0;  ///< s, after the step
     Regime regime = Regime::quasi_static;
-    int64_t flow_substeps = 0;         ///< of this step
-    int64_t flow_failures = 0;         ///< substeps tried again, smaller
-    int64_t flow_iterations = 0;       ///< Newton iterations of the flow
-    int64_t coupling_steps = 0;        ///< exchanges between flow and motion
+    int64_t flow_substeps = 0;    ///< of this step
+    int64_t flow_failures = 0;    ///< substeps tried again, smaller
+    int64_t flow_iterations = 0;  ///< Newton iterations of the flow
+    int64_t coupling_steps = 0;   ///< exchanges between flow and motion
     int64_t coupling_iterations = 0;
-    int64_t motion_iterations = 0;     ///< Newton iterations of the equilibrium
+    int64_t motion_iterations = 0;  ///< Newton iterations of the equilibrium
     WaterBalance water;
-    double largest_displacement = 0;   ///< m, since the start
-    double largest_velocity = 0;       ///< m/s, mean over the step
-    double least_factor_of_safety = 0; ///< least local one; 0 where none is known
-    double seconds_flow = 0;           ///< wall seconds of this step
+    double largest_displacement = 0;    ///< m, since the start
+    double largest_velocity = 0;        ///< m/s, mean over the step
+    double least_factor_of_safety = 0;  ///< least local one; 0 where none is known
+    double seconds_flow = 0;            ///< wall seconds of this step
     double seconds_motion = 0;
     double seconds_total = 0;
 };
 
 enum class EventKind : int32_t {
-    saturated = 1,            ///< the last pore of the ground filled
-    ponding_started = 2,      ///< water stands on the surface, or runs off
+    saturated = 1,        ///< the last pore of the ground filled
+    ponding_started = 2,  ///< water stands on the surface, or runs off
     ponding_ended = 3,
     seepage_started = 4,      ///< water comes out of the surface
     loss_of_equilibrium = 5,  ///< no equilibrium exists: failure
@@ -64,9 +64,9 @@ enum class EventKind : int32_t {
 
 struct Event {
     EventKind kind{};
-    double time = 0;  ///< s
-    Place place{};    ///< where, m
-    double value = 0; ///< what the kind says
+    double time = 0;   ///< s
+    Place place{};     ///< where, m
+    double value = 0;  ///< what the kind says
     std::string message;
 };
 
@@ -104,18 +104,20 @@ public:
 
     // push
     [[nodiscard]] int32_t zone(std::string_view name) const;
-    void push_rain(int32_t zone, std::span<const double> time, std::span<const double> rate);  ///< replaces from time[0] on
-    void set_rain(int32_t zone, double rate);                                                  ///< m/s, from now until changed
+    void push_rain(int32_t zone, std::span<const double> time,
+                   std::span<const double> rate);  ///< replaces from time[0] on
+    void set_rain(int32_t zone, double rate);      ///< m/s, from now until changed
     [[nodiscard]] int32_t boundary(std::string_view name) const;
     void push_flow_value(int32_t boundary, std::span<const double> time, std::span<const double> value);
-    void push_motion_value(int32_t boundary, int32_t component, std::span<const double> time, std::span<const double> value);
+    void push_motion_value(int32_t boundary, int32_t component, std::span<const double> time,
+                           std::span<const double> value);
 
     // step
     /// Carries the state dt seconds on. ok, or cancelled (undone), or out_of_rain (done, with the last rate held).
     Status step(double dt, StepReport& report);
     Status advance_to(double time, StepReport& report);  ///< the same, landing on the time bit for bit
-    void cancel() noexcept;  ///< any thread: ends the step that runs, or else the next one
-    [[nodiscard]] double time() const noexcept;  ///< any thread
+    void cancel() noexcept;                              ///< any thread: ends the step that runs, or else the next one
+    [[nodiscard]] double time() const noexcept;          ///< any thread
     [[nodiscard]] const StepReport& last_report() const;
 
     // query

@@ -53,10 +53,12 @@ int64_t bytes_held(const Simulation& simulation) {
     const GroundState& ground = simulation.state();
     const Points& points = ground.points;
     size_t values = simulation.mesh().position.size();
-    for (const auto* field : {&ground.node_position, &ground.displacement, &ground.velocity, &ground.flow.pressure, &ground.flow.stored,
-                              &ground.pore_volume, &ground.flow_pore_volume, &ground.pore_volume_rate, &ground.pore_stress_rate, &points.position,
-                              &points.volume, &points.displacement, &points.skeleton_stress, &points.strain, &points.plastic_strain,
-                              &points.mobilised_strength, &points.pressure, &points.saturation, &points.porosity, &points.darcy_flux})
+    for (const auto* field :
+         {&ground.node_position,    &ground.displacement, &ground.velocity,         &ground.flow.pressure,
+          &ground.flow.stored,      &ground.pore_volume,  &ground.flow_pore_volume, &ground.pore_volume_rate,
+          &ground.pore_stress_rate, &points.position,     &points.volume,           &points.displacement,
+          &points.skeleton_stress,  &points.strain,       &points.plastic_strain,   &points.mobilised_strength,
+          &points.pressure,         &points.saturation,   &points.porosity,         &points.darcy_flux})
         values += field->size();
     return static_cast<int64_t>(values * sizeof(double));
 }
@@ -75,12 +77,16 @@ std::string Engine::State::describe() const {
     json["nodes"] = mesh.node_count();
     json["cells"] = mesh.cell_count();
     json["points"] = simulation.state().points.count;
-    json["unknowns"] = {{"flow", simulation.flow() != nullptr ? mesh.node_count() : 0}, {"motion", simulation.motion_unknowns()}};
+    json["unknowns"] = {{"flow", simulation.flow() != nullptr ? mesh.node_count() : 0},
+                        {"motion", simulation.motion_unknowns()}};
     json["bytes"] = bytes_held(simulation);
-    json["schedule"] = {{"duration", number_or_null(s.schedule.duration)}, {"step", number_or_null(s.schedule.step)}, {"outputs", s.schedule.outputs}};
+    json["schedule"] = {{"duration", number_or_null(s.schedule.duration)},
+                        {"step", number_or_null(s.schedule.step)},
+                        {"outputs", s.schedule.outputs}};
     json["zones"] = ordered_json::array();
     for (const RainZone& zone : s.surface.zones)
-        json["zones"].push_back({{"name", zone.name}, {"x_from", number_or_null(zone.x_from)}, {"x_to", number_or_null(zone.x_to)}});
+        json["zones"].push_back(
+            {{"name", zone.name}, {"x_from", number_or_null(zone.x_from)}, {"x_to", number_or_null(zone.x_to)}});
     json["boundaries"] = ordered_json::array();
     for (const Boundary& boundary : s.boundaries)
         json["boundaries"].push_back({{"name", boundary.name},
@@ -88,7 +94,8 @@ std::string Engine::State::describe() const {
                                       {"flow", text_or_null(flow_name(boundary))},
                                       {"motion", text_or_null(motion_name(boundary))}});
     json["probes"] = ordered_json::array();
-    for (const ProbeTrack& probe : probes) json["probes"].push_back({{"name", probe.name}, {"x", probe.place[0]}, {"y", probe.place[1]}});
+    for (const ProbeTrack& probe : probes)
+        json["probes"].push_back({{"name", probe.name}, {"x", probe.place[0]}, {"y", probe.place[1]}});
     json["probe_quantities"] = quantities;
     json["fields"] = ordered_json::array();
     constexpr std::array locations{"node", "point", "cell", "mesh"};

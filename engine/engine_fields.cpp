@@ -37,7 +37,8 @@ constexpr std::array fields{
     FieldEntry{"point_position", "m", "", Location::point, 0, Needs::nothing, Source::held},
     FieldEntry{"point_volume", "m2", "", Location::point, 1, Needs::nothing, Source::held},
     FieldEntry{"point_pressure", "Pa", "soil_water__pressure", Location::point, 1, Needs::water, Source::held},
-    FieldEntry{"saturation", "1", "soil_water__saturated_volume_fraction", Location::point, 1, Needs::water, Source::held},
+    FieldEntry{"saturation", "1", "soil_water__saturated_volume_fraction", Location::point, 1, Needs::water,
+               Source::held},
     FieldEntry{"suction", "Pa", "soil_water__suction", Location::point, 1, Needs::water, Source::derived},
     FieldEntry{"porosity", "1", "soil__porosity", Location::point, 1, Needs::water, Source::held},
     FieldEntry{"water_content", "1", "soil_water__volume_fraction", Location::point, 1, Needs::water, Source::derived},
@@ -46,7 +47,8 @@ constexpr std::array fields{
     FieldEntry{"total_stress", "Pa", "soil__total_stress", Location::point, 4, Needs::skeleton, Source::derived},
     FieldEntry{"strain", "1", "soil__strain", Location::point, 4, Needs::skeleton, Source::held},
     FieldEntry{"plastic_strain", "1", "soil__plastic_strain", Location::point, 1, Needs::skeleton, Source::held},
-    FieldEntry{"mobilised_strength", "1", "soil__mobilized_strength", Location::point, 1, Needs::skeleton, Source::held},
+    FieldEntry{"mobilised_strength", "1", "soil__mobilized_strength", Location::point, 1, Needs::skeleton,
+               Source::held},
 };
 
 bool has(const FieldEntry& entry, const Scene& scene) {
@@ -55,7 +57,8 @@ bool has(const FieldEntry& entry, const Scene& scene) {
 }
 
 const FieldEntry& find_entry(std::string_view name, const Scene& scene) {
-    const auto found = std::find_if(fields.begin(), fields.end(), [&](const FieldEntry& entry) { return entry.name == name; });
+    const auto found =
+        std::find_if(fields.begin(), fields.end(), [&](const FieldEntry& entry) { return entry.name == name; });
     if (found == fields.end()) throw Error(Status::unknown_field, "no field is named '" + std::string(name) + "'");
     if (!has(*found, scene))
         throw Error(Status::unknown_field, "field '" + std::string(name) + "' is left out: the scene has no " +
@@ -91,25 +94,29 @@ std::vector<double> derive(std::string_view name, const Simulation& simulation, 
     const Points& points = simulation.state().points;
     std::vector<double> values(points.pressure.size());
     if (name == "suction") {
-        std::transform(points.pressure.begin(), points.pressure.end(), values.begin(), [](double p) { return std::max(0.0, -p); });
+        std::transform(points.pressure.begin(), points.pressure.end(), values.begin(),
+                       [](double p) { return std::max(0.0, -p); });
         return values;
     }
     if (name == "water_content") {
-        std::transform(points.saturation.begin(), points.saturation.end(), points.porosity.begin(), values.begin(), std::multiplies<>());
+        std::transform(points.saturation.begin(), points.saturation.end(), points.porosity.begin(), values.begin(),
+                       std::multiplies<>());
         return values;
     }
     std::vector<double> added(simulation.pore_stress().size());
     for (size_t p = 0; p < added.size(); ++p) {
         const bool is_net = name == "net_stress";
         if (is_net && scene.physics.stress == StressMeasure::net) continue;
-        added[p] = -simulation.pore_stress()[p] + (is_net && scene.physics.water ? std::max(0.0, points.pressure[p]) : 0.0);
+        added[p] =
+            -simulation.pore_stress()[p] + (is_net && scene.physics.water ? std::max(0.0, points.pressure[p]) : 0.0);
     }
     return stress_with(points, added);
 }
 
 /// Values at a place in a cell, from its points: linear over them, kept within their range.
 template <class Shape>
-void sample_points(const double* rows, int64_t components, const typename Shape::Natural& at, std::span<double> values) {
+void sample_points(const double* rows, int64_t components, const typename Shape::Natural& at,
+                   std::span<double> values) {
     // The points are the corners of a smaller copy of the cell about its centre, in the same order.
     typename Shape::Natural place = at;
     if constexpr (Shape::nodes == 3) {
@@ -160,7 +167,9 @@ FieldView Engine::State::view(std::string_view field) const {
     view.location = entry.location;
     view.components = entry.components == 0 ? mesh.dimension : entry.components;
     if (entry.source == Source::connectivity) {
-        const std::vector<int32_t>& numbers = field == "cell_start" ? mesh.cell_start : field == "cell_nodes" ? mesh.cell_nodes : mesh.cell_soil;
+        const std::vector<int32_t>& numbers = field == "cell_start"   ? mesh.cell_start
+                                              : field == "cell_nodes" ? mesh.cell_nodes
+                                                                      : mesh.cell_soil;
         view.type = DataType::int32;
         view.data = numbers.data();
         view.count = static_cast<int64_t>(numbers.size());
@@ -193,7 +202,8 @@ void Engine::State::sample(const FieldView& field, const CellPlace& place, std::
         const auto from_nodes = [&](const double* node_rows, size_t width, size_t k) {
             double value = 0;
             for (size_t a = 0; a < Shape::nodes; ++a)
-                value += share[a] * node_rows[static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(first) + a]) * width + k];
+                value += share[a] *
+                         node_rows[static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(first) + a]) * width + k];
             return value;
         };
         if (field.location == Location::node) {
@@ -201,7 +211,8 @@ void Engine::State::sample(const FieldView& field, const CellPlace& place, std::
             return;
         }
         const std::string_view name = field.name;
-        if (name == "saturation" || name == "suction" || name == "point_pressure") {  // through the pressure, which is linear in the cell
+        if (name == "saturation" || name == "suction" ||
+            name == "point_pressure") {  // through the pressure, which is linear in the cell
             const double pressure = from_nodes(simulation.state().flow.pressure.data(), 1, 0);
             const auto soil = static_cast<size_t>(mesh.cell_soil[cell]);
             values[0] = name == "saturation" ? simulation.flow()->table(soil).at(pressure).saturation
@@ -220,7 +231,8 @@ std::vector<std::string> Engine::State::probe_quantities() const {
         if (!has(entry, *scene) || entry.source == Source::connectivity || is_place) continue;
         if (std::string_view(entry.name).starts_with("point_")) continue;
         const int64_t components = entry.components == 0 ? simulation.mesh().dimension : entry.components;
-        for (size_t k = 0; k < static_cast<size_t>(components); ++k) names.push_back(component_name(entry, components, k));
+        for (size_t k = 0; k < static_cast<size_t>(components); ++k)
+            names.push_back(component_name(entry, components, k));
     }
     return names;
 }

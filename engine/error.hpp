@@ -10,18 +10,18 @@ namespace talus {
 /// Values are those of talus_status in talus.h and are frozen.
 enum class Status : int32_t {
     ok = 0,
-    cancelled = 1,         ///< the host asked to stop; the step was undone
-    out_of_rain = 2,       ///< the step went past the end of the rain series; it was done with the last rate held
-    outside = 3,           ///< some places lie outside the ground; their values are NaN
+    cancelled = 1,    ///< the host asked to stop; the step was undone
+    out_of_rain = 2,  ///< the step went past the end of the rain series; it was done with the last rate held
+    outside = 3,      ///< some places lie outside the ground; their values are NaN
     invalid_handle = -1,
     invalid_argument = -2,
     invalid_scene = -3,
     unknown_field = -4,
-    not_converged = -5,    ///< the solver stopped; says nothing about the slope
+    not_converged = -5,  ///< the solver stopped; says nothing about the slope
     out_of_memory = -6,
     io = -7,
     internal = -8,
-    busy = -9,             ///< another call on the engine is running
+    busy = -9,  ///< another call on the engine is running
 };
 
 class Error : public std::runtime_error {

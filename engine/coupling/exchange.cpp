@@ -11,7 +11,8 @@ namespace talus {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr double well_expected = 100.0;  // disagreement of the first iteration at which the next exchange is as long as this one
+constexpr double well_expected =
+    100.0;  // disagreement of the first iteration at which the next exchange is as long as this one
 
 class Stopwatch {
 public:
@@ -63,7 +64,8 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
         outcome_ = find_equilibrium(flow, state_.time + duration);
         if (outcome_.status != EquilibriumStatus::converged) {
             equilibrium_->reject();
-            return outcome_.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost : Exchange::disagreed;
+            return outcome_.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost
+                                                                        : Exchange::disagreed;
         }
         if (cancelled(duration)) {
             equilibrium_->reject();
@@ -86,8 +88,10 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
 void Simulation::set_flow_forcing(double duration) {
     const FlowBoundaries& boundaries = flow_->boundaries;
     std::fill(flow_->forcing.rain.begin(), flow_->forcing.rain.end(), 0.0);
-    for (const ZoneShare& share : boundaries.zone_shares)
-        flow_->forcing.rain[static_cast<size_t>(share.surface_node)] += share.area * forcing.rain(static_cast<size_t>(share.zone), state_.time);
+    for (const ZoneShare& share : boundaries.zone_shares) {
+        flow_->forcing.rain[static_cast<size_t>(share.surface_node)] +=
+            share.area * forcing.rain(static_cast<size_t>(share.zone), state_.time);
+    }
     const auto ramp = [&](int32_t boundary, auto&& value_of) {
         const double start = value_of(forcing.flow_value(static_cast<size_t>(boundary), state_.time));
         const double end = value_of(forcing.flow_value(static_cast<size_t>(boundary), state_.time + duration));
@@ -95,7 +99,8 @@ void Simulation::set_flow_forcing(double duration) {
     };
     for (size_t h = 0; h < boundaries.held.size(); ++h) {
         const HeldNode& held = boundaries.held[h];
-        const bool hydrostatic = scene_.boundaries[static_cast<size_t>(held.boundary)].flow == FlowCondition::hydrostatic;
+        const bool hydrostatic =
+            scene_.boundaries[static_cast<size_t>(held.boundary)].flow == FlowCondition::hydrostatic;
         const double height = place_of(held.node)[1];
         flow_->forcing.held[h] = ramp(held.boundary, [&](double value) {
             return hydrostatic ? scene_.water.density * scene_.gravity * (value - height) : value;
@@ -123,9 +128,11 @@ void Simulation::expect_skeleton(double duration) {
     if (!equilibrium_) return;
     const auto& portions = flow_->network.portions;
     for (size_t i = 0; i < portions.size(); ++i) {
-        start_stress_[i] = flow_->pore_stress(static_cast<size_t>(portions[i].soil), state_.flow.pressure[static_cast<size_t>(portions[i].node)]);
+        start_stress_[i] = flow_->pore_stress(static_cast<size_t>(portions[i].soil),
+                                              state_.flow.pressure[static_cast<size_t>(portions[i].node)]);
         const bool stands = state_.equilibrium_lost;
-        end_volume_[i] = stands ? state_.flow_pore_volume[i] : state_.pore_volume[i] + state_.pore_volume_rate[i] * duration;
+        end_volume_[i] =
+            stands ? state_.flow_pore_volume[i] : state_.pore_volume[i] + state_.pore_volume_rate[i] * duration;
         end_stress_[i] = start_stress_[i] + (stands ? 0.0 : state_.pore_stress_rate[i] * duration);
         if (stands) flow_->skeleton.softness[i] = 0.0;
     }
@@ -143,8 +150,8 @@ void Simulation::expect_skeleton_at(double duration, std::span<const double> vol
 EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double until) {
     const Stopwatch stopwatch(counts.seconds_motion);
     set_loads(flow, until);
-    const EquilibriumOutcome outcome =
-        equilibrium_->solve({point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_});
+    const EquilibriumOutcome outcome = equilibrium_->solve(
+        {point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_});
     counts.motion_iterations += outcome.iterations;
     return outcome;
 }
@@ -157,8 +164,11 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
     found = state_.pore_volume;
     for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
         const double strain = equilibrium_->volumetric_increment(static_cast<int32_t>(c));
-        for (auto corner = static_cast<size_t>(mesh_.cell_start[c]); corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner)
-            found[static_cast<size_t>(flow_->network.corner_portion[corner])] += strain * flow_->network.corner_volume[corner];
+        for (auto corner = static_cast<size_t>(mesh_.cell_start[c]);
+             corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner) {
+            found[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
+                strain * flow_->network.corner_volume[corner];
+        }
     }
     disagreement_ = 0;
     flow_->evaluate(0.0, flow.pressure);  // for the capacity
@@ -167,7 +177,8 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
         const double stress = flow_->pore_stress(static_cast<size_t>(portions[i].soil), pressure);
         const double taken = end_volume_[i] + skeleton.softness[i] * (stress - end_stress_[i]);
         const HydraulicState& state = flow_->state()[i];
-        const double storage = found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + skeleton.softness[i];
+        const double storage =
+            found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + skeleton.softness[i];
         disagreement_ = std::max(disagreement_, std::abs(found[i] - taken) / (storage * agreement_pressure_));
         end_volume_[i] = found[i];
         end_stress_[i] = stress;
@@ -197,16 +208,19 @@ bool Simulation::is_full(std::span<const double> pressure) {
     return *std::min_element(pressure.begin(), pressure.end()) >= full;
 }
 
-void Simulation::notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const {
+void Simulation::notice(double time, std::span<const double> pressure, FlowWatch& watch,
+                        std::vector<Happening>& noticed) const {
     const FlowWatch before = watch;
     const FlowTotals& rates = flow_->total_rates();
     const std::span<const HydraulicState> states = flow_->state();
     watch.air = 0;
     for (size_t i = 0; i < states.size(); ++i) {
-        const Retention& retention = scene_.soils[static_cast<size_t>(flow_->network.portions[i].soil)].hydraulics.retention;
+        const Retention& retention =
+            scene_.soils[static_cast<size_t>(flow_->network.portions[i].soil)].hydraulics.retention;
         watch.air += flow_->skeleton.pore_volume[i].start * (retention.maximum_saturation - states[i].saturation);
     }
-    watch.gain = rates[rain_total] + rates[inflow_total] - rates[run_off_total] - rates[seepage_total] - rates[drained_total];
+    watch.gain =
+        rates[rain_total] + rates[inflow_total] - rates[run_off_total] - rates[seepage_total] - rates[drained_total];
     double highest = -std::numeric_limits<double>::infinity();
     int32_t wettest = 0;
     for (const SurfaceNode& surface : flow_->boundaries.surface) {
@@ -224,9 +238,12 @@ void Simulation::notice(double time, std::span<const double> pressure, FlowWatch
         const double filled = before.gain > 0 ? before.time + before.air / before.gain : time;
         noticed.push_back({HappeningKind::saturated, std::clamp(filled, before.time, time), place_of(wettest), 0.0});
     }
-    if (watch.is_ponding != before.is_ponding)
-        noticed.push_back({watch.is_ponding ? HappeningKind::ponding_started : HappeningKind::ponding_ended, time, place_of(wettest), rates[run_off_total]});
-    if (watch.is_seeping && !before.is_seeping) noticed.push_back({HappeningKind::seepage_started, time, place_of(wettest), rates[seepage_total]});
+    if (watch.is_ponding != before.is_ponding) {
+        noticed.push_back({watch.is_ponding ? HappeningKind::ponding_started : HappeningKind::ponding_ended, time,
+                           place_of(wettest), rates[run_off_total]});
+    }
+    if (watch.is_seeping && !before.is_seeping)
+        noticed.push_back({HappeningKind::seepage_started, time, place_of(wettest), rates[seepage_total]});
 }
 
 }  // namespace talus

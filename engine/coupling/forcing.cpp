@@ -9,7 +9,8 @@
 namespace talus {
 namespace {
 
-void replace_from(std::vector<double>& time, std::vector<double>& value, std::span<const double> new_time, std::span<const double> new_value) {
+void replace_from(std::vector<double>& time, std::vector<double>& value, std::span<const double> new_time,
+                  std::span<const double> new_value) {
     const auto kept = std::lower_bound(time.begin(), time.end(), new_time.front()) - time.begin();
     time.resize(static_cast<size_t>(kept));
     value.resize(static_cast<size_t>(kept));
@@ -26,7 +27,8 @@ double first_after(const std::vector<double>& times, double time, double until) 
 
 Forcing::Forcing(const Scene& scene) {
     for (const RainZone& zone : scene.surface.zones)
-        rain_.push_back({zone.time, zone.rate, std::isnan(zone.rain_end) ? std::numeric_limits<double>::infinity() : zone.rain_end});
+        rain_.push_back({zone.time, zone.rate,
+                         std::isnan(zone.rain_end) ? std::numeric_limits<double>::infinity() : zone.rain_end});
     for (const Boundary& boundary : scene.boundaries) {
         flow_.push_back(boundary.flow_value);
         motion_.push_back({boundary.motion_x, boundary.motion_y});
@@ -42,7 +44,8 @@ void Forcing::push_flow_value(size_t boundary, std::span<const double> time, std
     replace_from(flow_[boundary].time, flow_[boundary].value, time, value);
 }
 
-void Forcing::push_motion_value(size_t boundary, size_t component, std::span<const double> time, std::span<const double> value) {
+void Forcing::push_motion_value(size_t boundary, size_t component, std::span<const double> time,
+                                std::span<const double> value) {
     replace_from(motion_[boundary][component].time, motion_[boundary][component].value, time, value);
 }
 

@@ -20,18 +20,18 @@ struct FlowWatch {
 };
 
 struct GroundState {
-    double time = 0;                      ///< s
-    std::vector<double> node_position;    ///< nodes x dimension, m
-    std::vector<double> displacement;     ///< nodes x dimension, m; empty: rigid
-    std::vector<double> velocity;         ///< nodes x dimension, m/s, mean over the last step; empty: rigid
+    double time = 0;                    ///< s
+    std::vector<double> node_position;  ///< nodes x dimension, m
+    std::vector<double> displacement;   ///< nodes x dimension, m; empty: rigid
+    std::vector<double> velocity;       ///< nodes x dimension, m/s, mean over the last step; empty: rigid
     Points points;
-    FlowState flow;                       ///< empty: dry
-    std::vector<double> pore_volume;      ///< per portion, m3: what the ground has
-    std::vector<double> flow_pore_volume; ///< per portion, m3: what the flow last took for it
-    std::vector<double> pore_volume_rate; ///< per portion, m3/s, over the last exchange: the next one's prediction
-    std::vector<double> pore_stress_rate; ///< per portion, Pa/s, likewise
-    double exchange_step = 0;             ///< s, what the next exchange between flow and motion would take; 0: unknown
-    bool equilibrium_lost = false;        ///< the skeleton stands as it was when it failed
+    FlowState flow;                        ///< empty: dry
+    std::vector<double> pore_volume;       ///< per portion, m3: what the ground has
+    std::vector<double> flow_pore_volume;  ///< per portion, m3: what the flow last took for it
+    std::vector<double> pore_volume_rate;  ///< per portion, m3/s, over the last exchange: the next one's prediction
+    std::vector<double> pore_stress_rate;  ///< per portion, Pa/s, likewise
+    double exchange_step = 0;              ///< s, what the next exchange between flow and motion would take; 0: unknown
+    bool equilibrium_lost = false;         ///< the skeleton stands as it was when it failed
     FlowWatch watch;
     bool rain_is_out = false;
 };

@@ -1,11 +1,11 @@
 // The ground and its state before anything happens.
 #include "coupling/simulation.hpp"
 #include "error.hpp"
-#include "scene/problems.hpp"
 #include "ground/build.hpp"
 #include "materials/hydraulic/curves.hpp"
 #include "motion/geostatic.hpp"
 #include "points/quadrature.hpp"
+#include "scene/problems.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,8 @@ namespace {
 double vertical_extent(const Mesh& mesh) {
     double low = mesh.position[static_cast<size_t>(mesh.dimension) - 1];
     double high = low;
-    for (size_t i = static_cast<size_t>(mesh.dimension) - 1; i < mesh.position.size(); i += static_cast<size_t>(mesh.dimension)) {
+    for (size_t i = static_cast<size_t>(mesh.dimension) - 1; i < mesh.position.size();
+         i += static_cast<size_t>(mesh.dimension)) {
         low = std::min(low, mesh.position[i]);
         high = std::max(high, mesh.position[i]);
     }
@@ -28,9 +29,11 @@ double vertical_extent(const Mesh& mesh) {
 double suction_of(const HydraulicTable& table, const Soil& soil, size_t number, double saturation) {
     const Retention& retention = soil.hydraulics.retention;
     if (saturation >= retention.maximum_saturation) return 0.0;
-    if (saturation <= retention.residual_saturation)
-        throw Error(Status::invalid_scene, "initial.saturation = " + value_text(saturation) + ": must be above the residual saturation " +
-                                               value_text(retention.residual_saturation) + " of soils[" + std::to_string(number) + "]");
+    if (saturation <= retention.residual_saturation) {
+        throw Error(Status::invalid_scene,
+                    "initial.saturation = " + value_text(saturation) + ": must be above the residual saturation " +
+                        value_text(retention.residual_saturation) + " of soils[" + std::to_string(number) + "]");
+    }
     return -table.pressure_of_saturation(saturation);
 }
 
@@ -51,20 +54,25 @@ Simulation::Simulation(const Scene& scene, double tolerance)
 
 void Simulation::make_flow() {
     const auto points = static_cast<size_t>(state_.points.count);
-    flow_ = std::make_unique<FlowSystem>(scene_, mesh_.node_count(), make_network(mesh_, scene_), make_flow_boundaries(mesh_, mesh_, scene_));
+    flow_ = std::make_unique<FlowSystem>(scene_, mesh_.node_count(), make_network(mesh_, scene_),
+                                         make_flow_boundaries(mesh_, mesh_, scene_));
     integrator_ = std::make_unique<FlowIntegrator>(*flow_, tolerance_);
     flow_->forcing.rain.assign(flow_->boundaries.surface.size(), 0.0);
     flow_->forcing.held.resize(flow_->boundaries.held.size());
     flow_->forcing.flux.resize(flow_->boundaries.flux_shares.size());
-    for (auto* field : {&state_.points.pressure, &state_.points.saturation, &state_.points.porosity}) field->resize(points);
+    for (auto* field : {&state_.points.pressure, &state_.points.saturation, &state_.points.porosity})
+        field->resize(points);
     state_.points.darcy_flux.resize(points * static_cast<size_t>(mesh_.dimension));
 
     const size_t portions = flow_->network.portions.size();
     state_.pore_volume.assign(portions, 0.0);
-    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c)
-        for (auto corner = static_cast<size_t>(mesh_.cell_start[c]); corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner)
+    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
+        for (auto corner = static_cast<size_t>(mesh_.cell_start[c]);
+             corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner) {
             state_.pore_volume[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
                 scene_.soils[static_cast<size_t>(mesh_.cell_soil[c])].porosity * flow_->network.corner_volume[corner];
+        }
+    }
     flow_->skeleton.pore_volume.resize(portions);
     for (size_t i = 0; i < portions; ++i) flow_->skeleton.pore_volume[i] = {state_.pore_volume[i], 0.0};
     if (!scene_.physics.deforming) return;
@@ -73,8 +81,8 @@ void Simulation::make_flow() {
     flow_->skeleton.expected_stress.resize(portions);
     flow_->skeleton.projection.resize(flow_->network.neighbours.size());
     state_.flow_pore_volume = state_.pore_volume;
-    for (auto* field : {&state_.pore_volume_rate, &state_.pore_stress_rate, &start_stress_, &end_stress_, &end_volume_, &taken_volume_,
-                        &found_volume_, &portion_stress_})
+    for (auto* field : {&state_.pore_volume_rate, &state_.pore_stress_rate, &start_stress_, &end_stress_, &end_volume_,
+                        &taken_volume_, &found_volume_, &portion_stress_})
         field->assign(portions, 0.0);
     point_pressure_.resize(points);
     conductivity_factor_.assign(mesh_.cell_soil.size(), 1.0);
@@ -168,12 +176,15 @@ void Simulation::set_initial_flow() {
         case InitialFlow::saturation:
             for (const Portion& portion : flow_->network.portions) {
                 const auto soil = static_cast<size_t>(portion.soil);
-                flow.pressure[static_cast<size_t>(portion.node)] = -suction_of(flow_->table(soil), scene_.soils[soil], soil, initial.saturation);
+                flow.pressure[static_cast<size_t>(portion.node)] =
+                    -suction_of(flow_->table(soil), scene_.soils[soil], soil, initial.saturation);
             }
             break;
         case InitialFlow::hydrostatic:
-            for (size_t i = 0; i < nodes; ++i)
-                flow.pressure[i] = scene_.water.density * scene_.gravity * (initial.water_table - place_of(static_cast<int32_t>(i))[1]);
+            for (size_t i = 0; i < nodes; ++i) {
+                flow.pressure[i] = scene_.water.density * scene_.gravity *
+                                   (initial.water_table - place_of(static_cast<int32_t>(i))[1]);
+            }
             break;
         case InitialFlow::steady: find_steady_flow(); break;
     }
@@ -196,7 +207,8 @@ void Simulation::find_steady_flow() {
     for (Ramp& value : steady.held) value.rate = 0;
     for (Ramp& value : steady.flux) value.rate = 0;
     if (std::isnan(initial.surface_pressure)) {
-        for (size_t i = 0; i < boundaries.surface.size(); ++i) steady.rain[i] = boundaries.surface[i].rain_area * initial.surface_rain;
+        for (size_t i = 0; i < boundaries.surface.size(); ++i)
+            steady.rain[i] = boundaries.surface[i].rain_area * initial.surface_rain;
     } else {
         for (const SurfaceNode& surface : boundaries.surface) {
             boundaries.held.push_back({surface.node, -1});
@@ -211,8 +223,10 @@ void Simulation::find_steady_flow() {
     system.skeleton.pore_volume = flow_->skeleton.pore_volume;
     FlowIntegrator integrator(system, tolerance_);
     state_.flow.pressure = steady_guess();
-    if (!integrator.find_steady(state_.flow))
-        throw Error(Status::not_converged, "initial.flow = steady: no steady state was found under the boundaries given");
+    if (!integrator.find_steady(state_.flow)) {
+        throw Error(Status::not_converged,
+                    "initial.flow = steady: no steady state was found under the boundaries given");
+    }
 }
 
 // Hydrostatic under the mean head that the boundaries hold, and not drier than the surface.
@@ -223,10 +237,13 @@ std::vector<double> Simulation::steady_guess() const {
     const std::vector<HeldNode>& held = flow_->boundaries.held;
     if (held.empty()) return std::vector<double>(nodes, driest);
     double head = 0;
-    for (size_t h = 0; h < held.size(); ++h)
-        head += (flow_->forcing.held[h].start / unit_weight + place_of(held[h].node)[1]) / static_cast<double>(held.size());
+    for (size_t h = 0; h < held.size(); ++h) {
+        head +=
+            (flow_->forcing.held[h].start / unit_weight + place_of(held[h].node)[1]) / static_cast<double>(held.size());
+    }
     std::vector<double> guess(nodes);
-    for (size_t i = 0; i < nodes; ++i) guess[i] = std::max(driest, unit_weight * (head - place_of(static_cast<int32_t>(i))[1]));
+    for (size_t i = 0; i < nodes; ++i)
+        guess[i] = std::max(driest, unit_weight * (head - place_of(static_cast<int32_t>(i))[1]));
     return guess;
 }
 
@@ -241,9 +258,13 @@ void Simulation::set_initial_stress() {
     if (outcome_.status == EquilibriumStatus::converged) return;
     const auto [x, y] = outcome_.collapse.place;
     const std::string where = " at (" + value_text(x) + ", " + value_text(y) + ") m";
-    if (outcome_.status == EquilibriumStatus::no_equilibrium)
-        throw Error(Status::invalid_scene, "initial.stress: the ground does not stand under its own weight: it fails" + where);
-    throw Error(Status::not_converged, "initial.stress: no equilibrium was found under the ground's own weight; this says nothing about the slope");
+    if (outcome_.status == EquilibriumStatus::no_equilibrium) {
+        throw Error(Status::invalid_scene,
+                    "initial.stress: the ground does not stand under its own weight: it fails" + where);
+    }
+    throw Error(
+        Status::not_converged,
+        "initial.stress: no equilibrium was found under the ground's own weight; this says nothing about the slope");
 }
 
 }  // namespace talus

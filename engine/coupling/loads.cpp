@@ -19,7 +19,8 @@ void Simulation::update_points() {
         const auto soil = static_cast<size_t>(mesh_.cell_soil[c]);
         const double factor = conductivity_factor_.empty() ? 1.0 : conductivity_factor_[c];
         const Tensor k = conductivity_tensor(scene_.soils[soil].hydraulics.conductivity);
-        for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]); ++p) {
+        for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]);
+             ++p) {
             const HydraulicState here = flow_->table(soil).at(points.pressure[p]);
             points.saturation[p] = here.saturation;
             points.porosity[p] = porosity(p);
@@ -48,8 +49,10 @@ void Simulation::set_loads(const FlowState& flow, double until) {
     if (flow_) {
         interpolate(mesh_, points, mesh_.cell_nodes, flow.pressure, point_pressure_);
         const auto& portions = flow_->network.portions;
-        for (size_t i = 0; i < portions.size(); ++i)
-            portion_stress_[i] = flow_->pore_stress(static_cast<size_t>(portions[i].soil), flow.pressure[static_cast<size_t>(portions[i].node)]);
+        for (size_t i = 0; i < portions.size(); ++i) {
+            portion_stress_[i] = flow_->pore_stress(static_cast<size_t>(portions[i].soil),
+                                                    flow.pressure[static_cast<size_t>(portions[i].node)]);
+        }
         interpolate(mesh_, points, flow_->network.corner_portion, portion_stress_, point_pore_stress_);
     }
     for (size_t p = 0; p < static_cast<size_t>(points.count); ++p) {
@@ -61,19 +64,21 @@ void Simulation::set_loads(const FlowState& flow, double until) {
         if (flow_) {
             const Retention& retention = soil.hydraulics.retention;
             const double saturation = flow_->table(number).at(point_pressure_[p]).saturation;
-            const double water_density = scene_.water.density * std::exp(point_pressure_[p] / scene_.water.bulk_modulus);
+            const double water_density =
+                scene_.water.density * std::exp(point_pressure_[p] / scene_.water.bulk_modulus);
             point_density_[p] += porosity(p) * saturation * water_density;
             suction = std::max(0.0, -point_pressure_[p]);
-            effective_saturation =
-                (saturation - retention.residual_saturation) / (retention.maximum_saturation - retention.residual_saturation);
+            effective_saturation = (saturation - retention.residual_saturation) /
+                                   (retention.maximum_saturation - retention.residual_saturation);
         }
         point_strength_[p] = shear_strength(soil.solid.strength, suction, effective_saturation);
     }
     std::fill(node_force_.begin(), node_force_.end(), 0.0);
     for (const GivenTraction& given : given_tractions_) add_traction(given, until);
-    for (const GivenDisplacement& given : given_displacements_)
+    for (const GivenDisplacement& given : given_displacements_) {
         prescribed_displacement_[given.freedom] =
             forcing.motion_value(given.boundary, given.component, until) - state_.displacement[given.freedom];
+    }
 }
 
 void Simulation::add_traction(const GivenTraction& given, double time) {
@@ -84,7 +89,8 @@ void Simulation::add_traction(const GivenTraction& given, double time) {
     }
     const auto a = 2 * static_cast<size_t>(facet.node_a);
     const auto b = 2 * static_cast<size_t>(facet.node_b);
-    const double length = std::hypot(mesh_.position[b] - mesh_.position[a], mesh_.position[b + 1] - mesh_.position[a + 1]);
+    const double length =
+        std::hypot(mesh_.position[b] - mesh_.position[a], mesh_.position[b + 1] - mesh_.position[a + 1]);
     for (size_t component = 0; component < 2; ++component) {
         const double force = 0.5 * length * forcing.motion_value(given.boundary, component, time);
         node_force_[a + component] += force;
@@ -101,22 +107,28 @@ void Simulation::refresh_geometry() {
         if (soil.hydraulics.conductivity.porosity_dependence == PorosityDependence::none) continue;
         double initial = 0;
         double now = 0;
-        for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]); ++p) {
+        for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]);
+             ++p) {
             initial += initial_volume_[p];
             now += points.volume[p];
         }
         // Kozeny (1927), Carman (1937): K grows as n^3 / (1 - n)^2.
         const double n = 1.0 - (1.0 - soil.porosity) * initial / now;
-        const auto kozeny_carman = [](double porosity) { return porosity * porosity * porosity / ((1.0 - porosity) * (1.0 - porosity)); };
+        const auto kozeny_carman = [](double porosity) {
+            return porosity * porosity * porosity / ((1.0 - porosity) * (1.0 - porosity));
+        };
         conductivity_factor_[c] = kozeny_carman(n) / kozeny_carman(soil.porosity);
     }
     talus::refresh_geometry(flow_->network, mesh_, scene_, conductivity_factor_);
     flow_->boundaries = make_flow_boundaries(mesh_, reference_mesh_, scene_);
     for (size_t i = 0; i < flow_->skeleton.softness.size(); ++i) flow_->skeleton.softness[i] = 0.0;
-    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c)
-        for (auto corner = static_cast<size_t>(mesh_.cell_start[c]); corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner)
+    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
+        for (auto corner = static_cast<size_t>(mesh_.cell_start[c]);
+             corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner) {
             flow_->skeleton.softness[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
                 flow_->network.corner_volume[corner] * softness_[static_cast<size_t>(mesh_.cell_soil[c])];
+        }
+    }
 }
 
 // The pressure projection in the stored water: per cell, volume / corners^2 times the difference of each pair of corners, which is what the
@@ -133,8 +145,11 @@ void Simulation::set_projection() {
         // In triangles the skeleton sees the pressures averaged three times: over the cell, over the patches of its nodes, over their cells.
         const double averages = corners == 3 ? 3.0 : 1.0;
         const double share = averages * std::accumulate(first, last, 0.0) / (corners * corners);
-        for (auto pair = static_cast<size_t>(network.pair_start[c]); pair < static_cast<size_t>(network.pair_start[c + 1]); ++pair)
-            projection[static_cast<size_t>(network.pair_neighbours[pair])] += share * projection_softness_[static_cast<size_t>(mesh_.cell_soil[c])];
+        for (auto pair = static_cast<size_t>(network.pair_start[c]);
+             pair < static_cast<size_t>(network.pair_start[c + 1]); ++pair) {
+            projection[static_cast<size_t>(network.pair_neighbours[pair])] +=
+                share * projection_softness_[static_cast<size_t>(mesh_.cell_soil[c])];
+        }
     }
 }
 

@@ -10,9 +10,9 @@
 namespace talus {
 namespace {
 
-constexpr double first_exchange = 1e-4;    // of the host's first step: the start may be a sudden load
-constexpr double shortest_exchange = 1e-9; // of the host's step
-constexpr double failure_window = 1e-3;    // of the host's step: how closely the time of failure is found
+constexpr double first_exchange = 1e-4;     // of the host's first step: the start may be a sudden load
+constexpr double shortest_exchange = 1e-9;  // of the host's step
+constexpr double failure_window = 1e-3;     // of the host's step: how closely the time of failure is found
 
 std::string at_time(double time) { return "t = " + value_text(time) + " s: "; }
 
@@ -49,11 +49,13 @@ bool Simulation::advance(double until, const std::function<bool(double)>& cancel
                 }
                 break;
             case Exchange::flow_stopped:
-                shorten_exchange(duration, whole, "the flow's equations were not solved within " + value_text(duration) + " s");
+                shorten_exchange(duration, whole,
+                                 "the flow's equations were not solved within " + value_text(duration) + " s");
                 break;
         }
     }
-    for (size_t i = 0; i < state_.velocity.size(); ++i) state_.velocity[i] = (state_.displacement[i] - displacement_before[i]) / whole;
+    for (size_t i = 0; i < state_.velocity.size(); ++i)
+        state_.velocity[i] = (state_.displacement[i] - displacement_before[i]) / whole;
     update_points();
     return true;
 }
@@ -67,7 +69,8 @@ void Simulation::shorten_exchange(double duration, double whole, const std::stri
 
 void Simulation::lose_equilibrium() {
     state_.equilibrium_lost = true;
-    happenings.push_back({HappeningKind::loss_of_equilibrium, state_.time, outcome_.collapse.place, outcome_.collapse.displacement});
+    happenings.push_back(
+        {HappeningKind::loss_of_equilibrium, state_.time, outcome_.collapse.place, outcome_.collapse.displacement});
 }
 
 void Simulation::note_rain_end() {
@@ -91,7 +94,8 @@ double Simulation::water_now() const {
 }
 
 double Simulation::least_factor_of_safety() const {
-    const double least = equilibrium_ ? equilibrium_->least_factor_of_safety() : std::numeric_limits<double>::infinity();
+    const double least =
+        equilibrium_ ? equilibrium_->least_factor_of_safety() : std::numeric_limits<double>::infinity();
     return std::isfinite(least) ? least : 0.0;
 }
 

@@ -28,7 +28,14 @@ struct StepCounts {
     double seconds_motion = 0;
 };
 
-enum class HappeningKind { saturated, ponding_started, ponding_ended, seepage_started, loss_of_equilibrium, rain_ended };
+enum class HappeningKind {
+    saturated,
+    ponding_started,
+    ponding_ended,
+    seepage_started,
+    loss_of_equilibrium,
+    rain_ended
+};
 
 /// Something the host should know, noticed inside a step.
 struct Happening {
@@ -61,11 +68,15 @@ public:
     [[nodiscard]] const Mesh& mesh() const { return mesh_; }
     [[nodiscard]] const Mesh& reference_mesh() const { return reference_mesh_; }
     [[nodiscard]] const FlowSystem* flow() const { return flow_.get(); }
-    [[nodiscard]] FlowStatistics flow_statistics() const { return integrator_ ? integrator_->statistics() : FlowStatistics{}; }
-    [[nodiscard]] double water_now() const;      ///< m3, in the pores and ponded, from the pressures
+    [[nodiscard]] FlowStatistics flow_statistics() const {
+        return integrator_ ? integrator_->statistics() : FlowStatistics{};
+    }
+    [[nodiscard]] double water_now() const;  ///< m3, in the pores and ponded, from the pressures
     [[nodiscard]] double initial_water() const { return initial_water_; }
     [[nodiscard]] double least_factor_of_safety() const;  ///< 0: none known
-    [[nodiscard]] const std::vector<double>& pore_stress() const { return point_pore_stress_; }  ///< per point, Pa; empty: rigid or dry
+    [[nodiscard]] const std::vector<double>& pore_stress() const {
+        return point_pore_stress_;
+    }  ///< per point, Pa; empty: rigid or dry
     [[nodiscard]] size_t motion_unknowns() const { return motion_unknowns_; }
 
 private:
@@ -113,7 +124,7 @@ private:
     std::unique_ptr<Equilibrium> equilibrium_;    // empty: rigid
     double initial_water_ = 0;
     size_t motion_unknowns_ = 0;
-    double agreement_pressure_ = 0;              // Pa: pore volumes agree where the difference moves the pressure by less
+    double agreement_pressure_ = 0;  // Pa: pore volumes agree where the difference moves the pressure by less
     struct GivenDisplacement {
         size_t freedom, boundary, component;
     };
@@ -122,23 +133,23 @@ private:
     };
     void add_traction(const GivenTraction& given, double time);
 
-    std::vector<double> softness_;               // per soil, 1/Pa: the fixed-stress split's
-    std::vector<double> projection_softness_;    // per soil, 1/Pa: the pressure projection's
+    std::vector<double> softness_;             // per soil, 1/Pa: the fixed-stress split's
+    std::vector<double> projection_softness_;  // per soil, 1/Pa: the pressure projection's
     std::vector<GivenDisplacement> given_displacements_;
     std::vector<GivenTraction> given_tractions_;
 
     // Of the exchange under way
     std::vector<double> portion_stress_, point_pressure_;
-    std::vector<double> start_stress_;           // per portion, Pa
-    std::vector<double> end_stress_;             // per portion, Pa, as the flow found it
-    std::vector<double> end_volume_;             // per portion, m3, as the skeleton is expected to have it
-    std::vector<double> taken_volume_;           // per portion, m3, as the flow took it
-    std::vector<double> found_volume_;           // per portion, m3, as the skeleton found it
-    double disagreement_ = 0;                    // largest difference of the two's pore volumes, over the one that is let stand
+    std::vector<double> start_stress_;  // per portion, Pa
+    std::vector<double> end_stress_;    // per portion, Pa, as the flow found it
+    std::vector<double> end_volume_;    // per portion, m3, as the skeleton is expected to have it
+    std::vector<double> taken_volume_;  // per portion, m3, as the flow took it
+    std::vector<double> found_volume_;  // per portion, m3, as the skeleton found it
+    double disagreement_ = 0;           // largest difference of the two's pore volumes, over the one that is let stand
     std::vector<double> point_pore_stress_, point_density_, node_force_, prescribed_displacement_;
     std::vector<ShearStrength> point_strength_;
-    std::vector<double> initial_volume_;         // per point, m3
-    std::vector<double> conductivity_factor_;    // per cell; empty: 1
+    std::vector<double> initial_volume_;       // per point, m3
+    std::vector<double> conductivity_factor_;  // per cell; empty: 1
     EquilibriumOutcome outcome_;
 };
 

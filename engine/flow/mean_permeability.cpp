@@ -7,8 +7,8 @@
 namespace talus {
 namespace {
 
-constexpr double least_share = 0.5;  // of the diffusion that stays in the slope by the lower pressure: see docs/theory.md
-
+constexpr double least_share =
+    0.5;  // of the diffusion that stays in the slope by the lower pressure: see docs/theory.md
 
 // 0 where it is drier than the chord, 1 on it, 2 where it is wet: the curves have a kink between two of them.
 int piece(const HydraulicTable& table, double pressure) {

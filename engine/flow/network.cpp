@@ -133,9 +133,10 @@ void make_links(Network& network, const Mesh& mesh) {
     for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
         const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
         const size_t corners = cell_corners(mesh, cell);
-        for (size_t c = 0; c < (corners == 2 ? 1 : corners); ++c)
+        for (size_t c = 0; c < (corners == 2 ? 1 : corners); ++c) {
             network.corner_link[first + c] =
                 numbers.of(network.corner_portion[first + c], network.corner_portion[first + (c + 1) % corners]);
+        }
     }
 }
 
@@ -165,10 +166,12 @@ void make_neighbours(Network& network, const Mesh& mesh) {
     network.pair_start.assign(1, 0);
     for (int32_t cell = 0; cell < mesh.cell_count(); ++cell) {
         const auto first = static_cast<size_t>(mesh.cell_start[static_cast<size_t>(cell)]);
-        for (size_t i = 0; i < cell_corners(mesh, cell); ++i)
-            for (size_t j = i + 1; j < cell_corners(mesh, cell); ++j)
+        for (size_t i = 0; i < cell_corners(mesh, cell); ++i) {
+            for (size_t j = i + 1; j < cell_corners(mesh, cell); ++j) {
                 network.pair_neighbours.push_back(
                     numbers.of(network.corner_portion[first + i], network.corner_portion[first + j]));
+            }
+        }
         network.pair_start.push_back(static_cast<int32_t>(network.pair_neighbours.size()));
     }
 }

@@ -41,9 +41,10 @@ SparseMatrix FlowSystem::make_matrix() {
     std::vector<std::array<int32_t, 2>> pairs;
     for (const auto* list : {&network.links, &network.neighbours})
         for (const Link& link : *list) pairs.push_back({node(link.portion_a), node(link.portion_b)});
-    for (const Crossing& crossing : network.crossings)
+    for (const Crossing& crossing : network.crossings) {
         for (const int32_t i : ends(crossing.link_a))
             for (const int32_t j : ends(crossing.link_b)) pairs.push_back({i, j});
+    }
     SparseMatrix matrix = symmetric_pattern(node_count(), pairs);
 
     const auto places = [&](std::array<int32_t, 2> rows, std::array<int32_t, 2> columns) {
@@ -223,9 +224,10 @@ void FlowSystem::assemble_steady(SparseMatrix& matrix) const { assemble(0.0, 1.0
 // storage d(stored)/dp - step d(inflow)/dp
 void FlowSystem::assemble(double storage, double step, SparseMatrix& matrix) const {
     std::fill(matrix.value.begin(), matrix.value.end(), 0.0);
-    for (size_t i = 0; i < diagonal_.size(); ++i)
+    for (size_t i = 0; i < diagonal_.size(); ++i) {
         matrix.value[static_cast<size_t>(diagonal_[i])] =
             held_node_[i] != 0 ? 1.0 : storage * stored_slope_[i] - step * inflow_slope_[i];
+    }
     assemble_links(step, matrix);
     assemble_crossings(step, matrix);
     if (skeleton.softness.empty() || storage == 0) return;
@@ -295,9 +297,10 @@ double FlowSystem::imbalance() const {
         const auto a = static_cast<size_t>(network.links[l].portion_a);
         const auto b = static_cast<size_t>(network.links[l].portion_b);
         const double driving = std::abs(link_state_[l].head - network.fall[l]) + std::abs(network.fall[l]);
-        for (const size_t end : {a, b})
+        for (const size_t end : {a, b}) {
             passing[static_cast<size_t>(network.portions[end].node)] +=
                 network.transmissibility[l] * link_state_[l].permeability * driving;
+        }
     }
     double largest = 0;
     for (size_t i = 0; i < passing.size(); ++i)

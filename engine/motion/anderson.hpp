@@ -24,9 +24,9 @@ private:
 
     Eigen::Index used_ = 0, next_ = 0;
     bool has_last_ = false;
-    Eigen::MatrixXd moved_;      // size x depth: steps taken
-    Eigen::MatrixXd changed_;    // size x depth: how the plain step changed over each of them
-    Eigen::MatrixXd products_;   // changed^T changed
+    Eigen::MatrixXd moved_;     // size x depth: steps taken
+    Eigen::MatrixXd changed_;   // size x depth: how the plain step changed over each of them
+    Eigen::MatrixXd products_;  // changed^T changed
     Eigen::VectorXd last_plain_, last_taken_;
 };
 

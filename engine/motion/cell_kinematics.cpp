@@ -17,7 +17,8 @@ const int32_t* cell_nodes(const Mesh& mesh, int32_t cell) {
 
 double cell_volume(const Points& points, int32_t cell) {
     double volume = 0;
-    for (int32_t p = points.cell_start[static_cast<size_t>(cell)]; p < points.cell_start[static_cast<size_t>(cell) + 1]; ++p) {
+    for (int32_t p = points.cell_start[static_cast<size_t>(cell)]; p < points.cell_start[static_cast<size_t>(cell) + 1];
+         ++p) {
         volume += points.volume[static_cast<size_t>(p)];
     }
     return volume;
@@ -119,7 +120,8 @@ void CellKinematics::update_gradients(const Mesh& mesh, const CellBlock& block) 
         const auto places = gather_places<Shape>(mesh.position.data(), cell_nodes(mesh, c));
         for (size_t i = 0; i < Shape::points; ++i) {
             const auto mapped = map_shape<Shape>(places, Shape::point[i]);
-            double* out = gradient_.data() + gradient_start_[static_cast<size_t>(c)] + i * Shape::nodes * Shape::dimension;
+            double* out =
+                gradient_.data() + gradient_start_[static_cast<size_t>(c)] + i * Shape::nodes * Shape::dimension;
             for (const auto& row : mapped.gradient) out = std::copy(row.begin(), row.end(), out);
         }
     }
@@ -154,7 +156,8 @@ void CellKinematics::update_triangle_dilatation(const Mesh& mesh, const Points& 
             const auto node = static_cast<size_t>(cell_nodes(mesh, c)[a]);
             patches_.volume[node] += volume;
             for (size_t b = 0; b < 3; ++b) {
-                double* const out = patches_.dilatation.data() + 2 * (patches_.start[node] + static_cast<size_t>(*slot++));
+                double* const out =
+                    patches_.dilatation.data() + 2 * (patches_.start[node] + static_cast<size_t>(*slot++));
                 out[0] += volume * g[b][0];
                 out[1] += volume * g[b][1];
             }

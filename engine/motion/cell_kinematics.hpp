@@ -41,7 +41,8 @@ public:
     [[nodiscard]] typename Shape::Gradients gradient(int32_t cell, size_t i) const {
         constexpr size_t size = Shape::nodes * Shape::dimension;
         typename Shape::Gradients rows;
-        std::memcpy(&rows, gradient_.data() + gradient_start_[static_cast<size_t>(cell)] + i * size, size * sizeof(double));
+        std::memcpy(&rows, gradient_.data() + gradient_start_[static_cast<size_t>(cell)] + i * size,
+                    size * sizeof(double));
         return rows;
     }
 
@@ -74,13 +75,14 @@ private:
 
     // Patches of triangles. A corner is one node of one triangle, 3 cell-wise.
     struct Patches {
-        std::vector<int32_t> triangles;       // cells that are triangles
-        std::vector<size_t> start;            // nodes + 1 offsets into `node`
-        std::vector<int32_t> node;            // the nodes of each node's patch
-        std::vector<double> dilatation;       // b of the patch's mean dilatation, x 2
-        std::vector<double> volume;           // one a node
-        std::vector<int32_t> corner_slot;     // triangles x 3 corners x 3 nodes: place of the node in the corner's patch
-        std::vector<int32_t> stencil_slot;    // for each triangle, corner and node of its patch: place in the cell's stencil
+        std::vector<int32_t> triangles;    // cells that are triangles
+        std::vector<size_t> start;         // nodes + 1 offsets into `node`
+        std::vector<int32_t> node;         // the nodes of each node's patch
+        std::vector<double> dilatation;    // b of the patch's mean dilatation, x 2
+        std::vector<double> volume;        // one a node
+        std::vector<int32_t> corner_slot;  // triangles x 3 corners x 3 nodes: place of the node in the corner's patch
+        std::vector<int32_t>
+            stencil_slot;  // for each triangle, corner and node of its patch: place in the cell's stencil
     } patches_;
 };
 

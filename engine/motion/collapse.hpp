@@ -24,7 +24,8 @@ struct CollapseEvidence {
     double surplus = 0;               ///< (power of the loads - power of the stresses) / power of the loads, -
     double earlier_surplus = 0;       ///< when the displacement was half as large
     double persistence = 0;           ///< least cosine between the directions of successive steps since then
-    std::array<double, 2> place{};        ///< centroid of what moves at half the largest velocity or more, m; x is 0 in a column
+    std::array<double, 2>
+        place{};  ///< centroid of what moves at half the largest velocity or more, m; x is 0 in a column
     std::array<double, 2> shear_place{};  ///< point of the largest shear rate, m
 };
 

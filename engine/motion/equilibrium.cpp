@@ -7,7 +7,8 @@
 
 namespace talus {
 
-Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, std::span<const uint8_t> prescribed, double gravity)
+Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, std::span<const uint8_t> prescribed,
+                         double gravity)
     : mesh_(mesh),
       points_(points),
       gravity_(gravity),
@@ -17,7 +18,8 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
       stiffness_(kinematics_, equations_, mesh.dimension),
       acceleration_(equations_.freedom.size()) {
     const size_t freedoms = mesh.position.size();
-    for (auto* field : {&displacement_, &increment_, &reaction_, &external_, &internal_, &start_}) field->assign(freedoms, 0.0);
+    for (auto* field : {&displacement_, &increment_, &reaction_, &external_, &internal_, &start_})
+        field->assign(freedoms, 0.0);
     for (auto* field : {&residual_, &direction_, &last_direction_}) field->assign(equations_.freedom.size(), 0.0);
     if (equations_.count() == 0) return;  // every displacement is given: nothing to solve for
     for (Factor* factor : {&elastic_, &tangent_}) {
@@ -81,7 +83,8 @@ void Equilibrium::set_external_force(const Loads& loads) {
                 for (size_t a = 0; a < Shape::nodes; ++a) {
                     const size_t up = static_cast<size_t>(stencil[a]) * Shape::dimension + Shape::dimension - 1;
                     external_[up] -= value[a] * weight;
-                    if constexpr (Shape::dimension == 1) external_[up] += loads.pore_stress[first + i] * volume * g[a][0];
+                    if constexpr (Shape::dimension == 1)
+                        external_[up] += loads.pore_stress[first + i] * volume * g[a][0];
                 }
             }
             if constexpr (Shape::dimension == 2) {

@@ -26,13 +26,13 @@ enum class EquilibriumStatus {
 
 struct EquilibriumOutcome {
     EquilibriumStatus status = EquilibriumStatus::not_converged;
-    int32_t iterations = 0;          ///< linear solves
-    int32_t factorisations = 0;      ///< of tangents
-    int32_t pseudo_steps = 0;        ///< of these iterations, steps in pseudo-time
-    int32_t yielding = 0;            ///< points on the yield surface
-    double residual = 0;             ///< norm of the unbalanced force over the norm of the loads, -
-    double largest_increment = 0;    ///< m
-    CollapseEvidence collapse;       ///< of no_equilibrium; of not_converged what was seen last
+    int32_t iterations = 0;        ///< linear solves
+    int32_t factorisations = 0;    ///< of tangents
+    int32_t pseudo_steps = 0;      ///< of these iterations, steps in pseudo-time
+    int32_t yielding = 0;          ///< points on the yield surface
+    double residual = 0;           ///< norm of the unbalanced force over the norm of the loads, -
+    double largest_increment = 0;  ///< m
+    CollapseEvidence collapse;     ///< of no_equilibrium; of not_converged what was seen last
 };
 
 class Equilibrium {
@@ -44,7 +44,8 @@ public:
     /// `solids`: one a soil. `prescribed`: nodes x dimension, non-zero where the displacement is given. `gravity` in m/s2,
     /// downwards. Mesh and points are the caller's; their present state is the accepted one, without displacement.
     /// Throws Error(invalid_scene) where a triangle has too many neighbours.
-    Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, std::span<const uint8_t> prescribed, double gravity);
+    Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, std::span<const uint8_t> prescribed,
+                double gravity);
 
     /// Finds the displacement increment from the accepted state that balances the loads. The points' stress, strain, plastic
     /// strain and mobilised strength are a trial state until accept() or reject(). Starts from the increment of the last solve
@@ -119,9 +120,9 @@ private:
     bool was_deformed_ = false;                 // at the last update: elastic_ is not the undeformed one
     bool is_at_start_ = true;                   // no increment to start from
 
-    std::vector<double> displacement_, increment_, reaction_;      // nodes x dimension
-    std::vector<double> external_, internal_, start_;              // nodes x dimension
-    std::vector<double> residual_, direction_, last_direction_;    // equations
+    std::vector<double> displacement_, increment_, reaction_;    // nodes x dimension
+    std::vector<double> external_, internal_, start_;            // nodes x dimension
+    std::vector<double> residual_, direction_, last_direction_;  // equations
     Anderson acceleration_;
     int32_t yielding_ = 0;
 };

@@ -14,10 +14,12 @@ struct Interval {
 /// The part of the vertical line at x that lies in a convex cell; empty (low > high) where it passes by.
 Interval vertical_cut(const Mesh& mesh, size_t cell, double x) {
     Interval cut{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    const auto first = static_cast<size_t>(mesh.cell_start[cell]), last = static_cast<size_t>(mesh.cell_start[cell + 1]);
+    const auto first = static_cast<size_t>(mesh.cell_start[cell]),
+               last = static_cast<size_t>(mesh.cell_start[cell + 1]);
     for (size_t k = first; k < last; ++k) {
         const double* const a = mesh.position.data() + 2 * static_cast<size_t>(mesh.cell_nodes[k]);
-        const double* const b = mesh.position.data() + 2 * static_cast<size_t>(mesh.cell_nodes[k + 1 < last ? k + 1 : first]);
+        const double* const b =
+            mesh.position.data() + 2 * static_cast<size_t>(mesh.cell_nodes[k + 1 < last ? k + 1 : first]);
         if (std::min(a[0], b[0]) > x || std::max(a[0], b[0]) < x || a[0] == b[0]) continue;
         const double y = a[1] + (x - a[0]) / (b[0] - a[0]) * (b[1] - a[1]);
         cut = {std::min(cut.low, y), std::max(cut.high, y)};
@@ -27,7 +29,8 @@ Interval vertical_cut(const Mesh& mesh, size_t cell, double x) {
 
 Interval column_cut(const Mesh& mesh, size_t cell) {
     const double a = mesh.position[static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(mesh.cell_start[cell])])];
-    const double b = mesh.position[static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(mesh.cell_start[cell]) + 1])];
+    const double b =
+        mesh.position[static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(mesh.cell_start[cell]) + 1])];
     return {std::min(a, b), std::max(a, b)};
 }
 
@@ -35,7 +38,8 @@ std::vector<double> cell_means(const Points& points, std::span<const double> val
     std::vector<double> means(cells, 0.0);
     for (size_t c = 0; c < cells; ++c) {
         double volume = 0;
-        for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]); ++p) {
+        for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]);
+             ++p) {
             means[c] += points.volume[p] * value[p];
             volume += points.volume[p];
         }
@@ -59,8 +63,8 @@ EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads)
     return yield_in_place(equilibrium, loads);
 }
 
-EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Points& points, const Loads& loads, double gravity,
-                                 double k0) {
+EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Points& points, const Loads& loads,
+                                 double gravity, double k0) {
     const auto cells = static_cast<size_t>(mesh.cell_count());
     const auto dimension = static_cast<size_t>(mesh.dimension);
     const std::vector<double> density = cell_means(points, loads.density, cells);

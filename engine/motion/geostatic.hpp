@@ -11,7 +11,7 @@ EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads)
 
 /// Vertical stress from the weight above each point, horizontal skeleton stress `k0` times the vertical one, then equilibrium
 /// with the soils' strength, as above. `gravity` in m/s2.
-EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Points& points, const Loads& loads, double gravity,
-                                 double k0);
+EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Points& points, const Loads& loads,
+                                 double gravity, double k0);
 
 }  // namespace talus

@@ -48,7 +48,8 @@ void Equilibrium::set_residual() {
 }
 
 double Equilibrium::relative_residual() {
-    for (size_t i = 0; i < internal_.size(); ++i) reaction_[i] = equations_.number[i] < 0 ? internal_[i] - external_[i] : 0.0;
+    for (size_t i = 0; i < internal_.size(); ++i)
+        reaction_[i] = equations_.number[i] < 0 ? internal_[i] - external_[i] : 0.0;
     const double unbalanced = norm(residual_);
     return unbalanced == 0 ? 0 : unbalanced / std::max(norm(external_), norm(reaction_));
 }
@@ -157,7 +158,8 @@ void Equilibrium::find_mechanism(CollapseEvidence& evidence) {
 
 /// Largest displacement that the whole loads would give the skeleton if it did not yield, m.
 double Equilibrium::elastic_displacement(EquilibriumOutcome& outcome) {
-    for (size_t i = 0; i < direction_.size(); ++i) direction_[i] = external_[static_cast<size_t>(equations_.freedom[i])];
+    for (size_t i = 0; i < direction_.size(); ++i)
+        direction_[i] = external_[static_cast<size_t>(equations_.freedom[i])];
     elastic_.solver->solve(elastic_.matrix, direction_);
     ++outcome.iterations;
     double largest = 0;
@@ -173,7 +175,8 @@ bool Equilibrium::watch(CollapseWatch& watch, std::span<const double> last_direc
         displacement = std::max(displacement, std::abs(increment_[freedom]));
     }
     const double lengths = norm(direction_) * norm(last_direction);
-    return watch.add(displacement, loads > 0 ? surplus / loads : 0, lengths > 0 ? dot(direction_, last_direction) / lengths : 1);
+    return watch.add(displacement, loads > 0 ? surplus / loads : 0,
+                     lengths > 0 ? dot(direction_, last_direction) / lengths : 1);
 }
 
 bool Equilibrium::factorise_tangent(double viscosity, EquilibriumOutcome& outcome) {
@@ -189,7 +192,8 @@ void Equilibrium::solve_for_direction(Factor& factor, EquilibriumOutcome& outcom
 }
 
 void Equilibrium::step_along(double length) {
-    for (size_t i = 0; i < direction_.size(); ++i) increment_[static_cast<size_t>(equations_.freedom[i])] += length * direction_[i];
+    for (size_t i = 0; i < direction_.size(); ++i)
+        increment_[static_cast<size_t>(equations_.freedom[i])] += length * direction_[i];
 }
 
 }  // namespace talus

@@ -37,7 +37,8 @@ void add_cell_force(const CellKinematics& kinematics, const Points& points, int3
         }
     }
     for (size_t a = 0; a < Shape::nodes; ++a) {
-        for (size_t k = 0; k < Shape::dimension; ++k) force[static_cast<size_t>(stencil[a]) * Shape::dimension + k] += nodal[a][k];
+        for (size_t k = 0; k < Shape::dimension; ++k)
+            force[static_cast<size_t>(stencil[a]) * Shape::dimension + k] += nodal[a][k];
     }
     if constexpr (Shape::dimension == 2) {
         const auto b = kinematics.dilatation(cell);
@@ -87,7 +88,8 @@ void Skeleton::set_strength(std::span<const ShearStrength> strength) {
 }
 
 template <class Law>
-void Skeleton::respond_with(std::span<const double> increment, std::span<double> force, const CellBlock& block, const Law& law) {
+void Skeleton::respond_with(std::span<const double> increment, std::span<double> force, const CellBlock& block,
+                            const Law& law) {
     const Matrix4d& elastic = elastic_tangent(block.soil);
     with_shape(block.nodes, [&](auto shape) {
         using Shape = decltype(shape);
@@ -175,7 +177,8 @@ void Skeleton::keep_moved(std::span<const double> increment) {
                 const Matrix2d g = displacement_gradient<Shape>(kinematics_.gradient<Shape>(c, i), u);
                 const Matrix2d middle = g * (Matrix2d::Identity() + g / 2).inverse();  // du/dx at x + u/2
                 const Matrix2d half_spin = (middle - middle.transpose()) / 4;
-                const Matrix2d rotation = (Matrix2d::Identity() - half_spin).inverse() * (Matrix2d::Identity() + half_spin);
+                const Matrix2d rotation =
+                    (Matrix2d::Identity() - half_spin).inverse() * (Matrix2d::Identity() + half_spin);
                 const Matrix2d difference = middle - g;
                 Vector4d strain = strain_increment<Shape>(g, dilatation);
                 strain += Vector4d(difference(0, 0), difference(1, 1), 0, difference(0, 1) + difference(1, 0));

@@ -67,7 +67,8 @@ private:
 
     bool is_elastic(int32_t soil) const { return solids_[static_cast<size_t>(soil)].model == SolidModel::elastic; }
     template <class Law>
-    void respond_with(std::span<const double> increment, std::span<double> force, const CellBlock& block, const Law& law);
+    void respond_with(std::span<const double> increment, std::span<double> force, const CellBlock& block,
+                      const Law& law);
 
     const CellKinematics& kinematics_;
     Points& points_;

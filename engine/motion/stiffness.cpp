@@ -40,19 +40,22 @@ Equations::Equations(std::span<const uint8_t> prescribed) : number(prescribed.si
     }
 }
 
-Stiffness::Stiffness(const CellKinematics& kinematics, const Equations& equations, int32_t dimension) : kinematics_(kinematics) {
+Stiffness::Stiffness(const CellKinematics& kinematics, const Equations& equations, int32_t dimension)
+    : kinematics_(kinematics) {
     int32_t cells = 0;
     for (const CellBlock& block : kinematics.blocks()) cells += static_cast<int32_t>(block.cells.size());
 
     const auto numbers_of = [&](int32_t cell) {
         std::vector<int32_t> numbers;
         if (kinematics.stencil(cell).size() > most_stencil_nodes) {
-            throw Error(Status::invalid_scene, "ground: the triangles that meet triangle " + std::to_string(cell) + " have " +
-                                                   std::to_string(kinematics.stencil(cell).size()) + " nodes; at most " +
-                                                   std::to_string(most_stencil_nodes) + " are allowed");
+            throw Error(Status::invalid_scene, "ground: the triangles that meet triangle " + std::to_string(cell) +
+                                                   " have " + std::to_string(kinematics.stencil(cell).size()) +
+                                                   " nodes; at most " + std::to_string(most_stencil_nodes) +
+                                                   " are allowed");
         }
         for (const int32_t node : kinematics.stencil(cell)) {
-            for (int32_t k = 0; k < dimension; ++k) numbers.push_back(equations.number[static_cast<size_t>(node * dimension + k)]);
+            for (int32_t k = 0; k < dimension; ++k)
+                numbers.push_back(equations.number[static_cast<size_t>(node * dimension + k)]);
         }
         return numbers;
     };
@@ -81,7 +84,8 @@ void Stiffness::assemble_elastic(const Points& points, const Skeleton& skeleton,
     assemble(points, matrix, [&](size_t p) -> const Matrix4d& { return skeleton.elastic_tangent(points.soil[p]); });
 }
 
-void Stiffness::assemble_tangent(const Points& points, const Skeleton& skeleton, double viscosity, SparseMatrix& matrix) const {
+void Stiffness::assemble_tangent(const Points& points, const Skeleton& skeleton, double viscosity,
+                                 SparseMatrix& matrix) const {
     assemble(points, matrix, [&](size_t p) -> Matrix4d {
         return skeleton.tangent(p) + viscosity * skeleton.elastic_tangent(points.soil[p]);
     });

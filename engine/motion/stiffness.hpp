@@ -15,8 +15,8 @@ namespace talus {
 
 /// Numbers of the equations: one a free degree of freedom.
 struct Equations {
-    std::vector<int32_t> number;    ///< nodes x dimension; -1 where prescribed
-    std::vector<int32_t> freedom;   ///< of each equation: its index into nodes x dimension
+    std::vector<int32_t> number;   ///< nodes x dimension; -1 where prescribed
+    std::vector<int32_t> freedom;  ///< of each equation: its index into nodes x dimension
 
     /// `prescribed`: nodes x dimension, non-zero where the displacement increment is given.
     explicit Equations(std::span<const uint8_t> prescribed);

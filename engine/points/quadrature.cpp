@@ -8,8 +8,9 @@ template <class Visit>
 void each_cell(const Mesh& mesh, const Points& points, Visit visit) {
     for (size_t c = 0; c < mesh.cell_soil.size(); ++c) {
         const int32_t first = mesh.cell_start[c];
-        with_shape(mesh.cell_start[c + 1] - first,
-                   [&](auto shape) { visit(shape, static_cast<size_t>(first), static_cast<size_t>(points.cell_start[c])); });
+        with_shape(mesh.cell_start[c + 1] - first, [&](auto shape) {
+            visit(shape, static_cast<size_t>(first), static_cast<size_t>(points.cell_start[c]));
+        });
     }
 }
 
@@ -37,20 +38,22 @@ Points make_points(const Mesh& mesh) {
     return points;
 }
 
-void interpolate(const Mesh& mesh, const Points& points, std::span<const int32_t> corner_index, std::span<const double> value,
-                 std::span<double> point_value) {
+void interpolate(const Mesh& mesh, const Points& points, std::span<const int32_t> corner_index,
+                 std::span<const double> value, std::span<double> point_value) {
     each_cell(mesh, points, [&](auto shape, size_t corner, size_t first) {
         using Shape = decltype(shape);
         for (size_t i = 0; i < Shape::points; ++i) {
             const auto share = Shape::values(Shape::point[i]);
             double sum = 0;
-            for (size_t a = 0; a < Shape::nodes; ++a) sum += share[a] * value[static_cast<size_t>(corner_index[corner + a])];
+            for (size_t a = 0; a < Shape::nodes; ++a)
+                sum += share[a] * value[static_cast<size_t>(corner_index[corner + a])];
             point_value[first + i] = sum;
         }
     });
 }
 
-void interpolate_gradient(const Mesh& mesh, const Points& points, std::span<const double> node_value, std::span<double> gradient) {
+void interpolate_gradient(const Mesh& mesh, const Points& points, std::span<const double> node_value,
+                          std::span<double> gradient) {
     each_cell(mesh, points, [&](auto shape, size_t corner, size_t first) {
         using Shape = decltype(shape);
         const int32_t* nodes = mesh.cell_nodes.data() + corner;
@@ -59,7 +62,8 @@ void interpolate_gradient(const Mesh& mesh, const Points& points, std::span<cons
             const auto mapped = map_shape<Shape>(places, Shape::point[i]);
             for (size_t k = 0; k < Shape::dimension; ++k) {
                 double value = 0;
-                for (size_t a = 0; a < Shape::nodes; ++a) value += mapped.gradient[a][k] * node_value[static_cast<size_t>(nodes[a])];
+                for (size_t a = 0; a < Shape::nodes; ++a)
+                    value += mapped.gradient[a][k] * node_value[static_cast<size_t>(nodes[a])];
                 gradient[(first + i) * Shape::dimension + k] = value;
             }
         }

@@ -147,9 +147,9 @@ void check_cells(const Check& check, const SectionGround& section, bool profiles
                  "= " + value_text(section.largest_cell_height) + " m: must be at least surfaceCellHeight, " +
                      value_text(section.surface_cell_height) + " m");
     check.at("bendColumnWidth")
-        .require(!(section.bend_column_width > section.column_width),
-                 "= " + value_text(section.bend_column_width) + " m: must be at most columnWidth, " + value_text(section.column_width) +
-                     " m");
+        .require(!(section.bend_column_width > section.column_width), "= " + value_text(section.bend_column_width) +
+                                                                          " m: must be at most columnWidth, " +
+                                                                          value_text(section.column_width) + " m");
     if (!profiles_hold) return;
     const double width = section.terrain.back()[0] - section.terrain.front()[0];
     const double depth = gap(section.terrain, section.base).greatest;

@@ -101,18 +101,19 @@ enum class MotionCondition { free, roller, fixed, displacement, traction };
 /// What holds on a part of one side. A part of a side that no boundary names is impermeable and free, but the surface, which
 /// takes rain, ponds and seeps unless a boundary says otherwise.
 struct Boundary {
-    std::string name;            ///< for messages and for changes in time
-    std::string side;            ///< base, left, right, surface or a physical line of the mesh file
+    std::string name;  ///< for messages and for changes in time
+    std::string side;  ///< base, left, right, surface or a physical line of the mesh file
     double x_from = -std::numeric_limits<double>::infinity();  ///< the part of the side, m
     double x_to = std::numeric_limits<double>::infinity();
     double y_from = -std::numeric_limits<double>::infinity();
     double y_to = std::numeric_limits<double>::infinity();
-    bool has_flow = false;       ///< whether it says anything on the flow
+    bool has_flow = false;  ///< whether it says anything on the flow
     FlowCondition flow = FlowCondition::impermeable;
-    Series flow_value;           ///< pressure: Pa; hydrostatic: elevation of the water table, m; flux: inflow normal to the side, m/s
-    bool has_motion = false;     ///< whether it says anything on the motion
+    Series
+        flow_value;  ///< pressure: Pa; hydrostatic: elevation of the water table, m; flux: inflow normal to the side, m/s
+    bool has_motion = false;  ///< whether it says anything on the motion
     MotionCondition motion = MotionCondition::free;
-    Series motion_x;             ///< displacement: m; traction: Pa; empty: free in this direction
+    Series motion_x;  ///< displacement: m; traction: Pa; empty: free in this direction
     Series motion_y;
 };
 
@@ -128,8 +129,8 @@ struct RainZone {
 };
 
 struct Surface {
-    double ponding_depth = 0;      ///< m of water that the surface may hold before it runs off
-    std::vector<RainZone> zones;   ///< parts not covered have no rain
+    double ponding_depth = 0;     ///< m of water that the surface may hold before it runs off
+    std::vector<RainZone> zones;  ///< parts not covered have no rain
 };
 
 // --- initial state, numerics, schedule -------------------------------------------------------------------------------
@@ -145,20 +146,21 @@ struct Initial {
     double surface_pressure = unset;  ///< Pa, held on the ground surface of the steady state
     double surface_rain = unset;      ///< m/s, on the ground surface of the steady state
     InitialStress stress = InitialStress::gravity;
-    double k0 = unset;                ///< ratio of horizontal to vertical net (or effective) stress
+    double k0 = unset;  ///< ratio of horizontal to vertical net (or effective) stress
 };
 
 enum class StressMeasure { net, bishop };
 
 /// What the scene's physics is; what it does not name is left out of the engine.
 struct Physics {
-    bool water = true;               ///< false: dry
-    bool deforming = true;           ///< false: rigid skeleton
+    bool water = true;      ///< false: dry
+    bool deforming = true;  ///< false: rigid skeleton
     StressMeasure stress = StressMeasure::net;
 };
 
 struct Numerics {
-    double tolerance = 1e-3;  ///< error allowed in saturation per unit of its range, and in pressure relative to the scene's own
+    double tolerance =
+        1e-3;  ///< error allowed in saturation per unit of its range, and in pressure relative to the scene's own
 };
 
 /// What a host that only follows the scene (the runner) does.

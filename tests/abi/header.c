@@ -1,7 +1,6 @@
 /* The public header stands alone, may be included twice, and its initialisers fit its structs in every language that
    compiles this file. */
 #include <talus/talus.h>
-#include <talus/talus.h>
 
 int main(void) {
     talus_options options = TALUS_OPTIONS_INIT;

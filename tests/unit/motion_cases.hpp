@@ -74,7 +74,8 @@ inline Points unstressed_points(const Mesh& mesh) {
 }
 
 /// What prescribes the displacement of a node: (x, y) -> {x prescribed, y prescribed}.
-inline std::vector<uint8_t> constrain(const Mesh& mesh, const std::function<std::array<bool, 2>(double, double)>& where) {
+inline std::vector<uint8_t> constrain(const Mesh& mesh,
+                                      const std::function<std::array<bool, 2>(double, double)>& where) {
     std::vector<uint8_t> prescribed(mesh.position.size(), 0);
     for (size_t i = 0; 2 * i < prescribed.size(); ++i) {
         const auto [x, y] = where(mesh.position[2 * i], mesh.position[2 * i + 1]);

@@ -17,7 +17,9 @@ EquilibriumOutcome stand_vertical_cut(CellKind kind, double cohesion) {
     const auto place = [](double x, double y) { return std::array<double, 2>{3 * x, y}; };
     Mesh mesh = grid_mesh(24, 8, kind, place);
     Points points = unstressed_points(mesh);
-    const auto prescribed = constrain(mesh, [](double x, double y) { return std::array<bool, 2>{x < 1e-9 || y < 1e-9, y < 1e-9}; });
+    const auto prescribed = constrain(mesh, [](double x, double y) {
+        return std::array<bool, 2>{x < 1e-9 || y < 1e-9, y < 1e-9};
+    });
     Equilibrium equilibrium(mesh, points, {mohr_coulomb_solid(1e7, 0.3)}, prescribed, 9.81);
     LoadArrays loads(mesh, points);
     std::fill(loads.density.begin(), loads.density.end(), 2000.0);
@@ -47,7 +49,8 @@ TEST_CASE("collapse: a surplus that falls towards a balance within five times th
     for (double u = 0.001; u < 0.5; u *= 1.2) CHECK_FALSE(watch.add(u, 0.1 * (1 - u / 0.5), 1));
 }
 
-TEST_CASE("collapse: a surplus that stays is proof, but only beyond the elastic displacement and in a steady direction") {
+TEST_CASE(
+    "collapse: a surplus that stays is proof, but only beyond the elastic displacement and in a steady direction") {
     CollapseWatch steady(0.1), turning(0.1);
     for (double u = 0.001; u < 0.5; u *= 1.2) {
         CHECK(steady.add(u, 0.02, 0.999) == (u > 0.1));

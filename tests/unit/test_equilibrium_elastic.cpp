@@ -23,7 +23,8 @@ TEST_CASE("equilibrium: a column under gravity and pore pressure carries its exa
     Equilibrium equilibrium(mesh, points, {elastic_solid(young, poisson)}, prescribed, 9.81);
     LoadArrays loads(mesh, points);
     std::fill(loads.density.begin(), loads.density.end(), 2000.0);
-    for (size_t p = 0; p < loads.pore_stress.size(); ++p) loads.pore_stress[p] = 1000 * 9.81 * (10 - points.position[p]);
+    for (size_t p = 0; p < loads.pore_stress.size(); ++p)
+        loads.pore_stress[p] = 1000 * 9.81 * (10 - points.position[p]);
     const EquilibriumOutcome outcome = equilibrium.solve(loads.view());
     CHECK(outcome.status == EquilibriumStatus::converged);
     CHECK(outcome.iterations == 1);

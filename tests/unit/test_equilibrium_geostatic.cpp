@@ -19,10 +19,17 @@ struct Level {
     LoadArrays loads;
 
     explicit Level(CellKind kind, double poisson_ratio)
-        : mesh(grid_mesh(4, 10, kind, [](double x, double y) { return std::array<double, 2>{5 * x, height * y}; })),
+        : mesh(grid_mesh(4, 10, kind,
+                         [](double x, double y) {
+                             return std::array<double, 2>{5 * x, height * y};
+                         })),
           points(unstressed_points(mesh)),
           equilibrium(mesh, points, {mohr_coulomb_solid(2e7, poisson_ratio)},
-                      constrain(mesh, [](double x, double y) { return std::array<bool, 2>{x < 1e-9 || x > 5 - 1e-9, y < 1e-9}; }), gravity),
+                      constrain(mesh,
+                                [](double x, double y) {
+                                    return std::array<bool, 2>{x < 1e-9 || x > 5 - 1e-9, y < 1e-9};
+                                }),
+                      gravity),
           loads(mesh, points) {
         std::fill(loads.density.begin(), loads.density.end(), density);
         std::fill(loads.strength.begin(), loads.strength.end(), ShearStrength{5e3, 30});
@@ -36,13 +43,16 @@ struct Level {
         double largest = 0;
         for (size_t c = 0; c < mesh.cell_soil.size(); ++c) {
             double vertical = 0, mean = 0, horizontal = 0, volume = 0;
-            for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]); ++p) {
-                vertical += points.volume[p] * (loads.pore_stress[p] - density * gravity * (height - points.position[2 * p + 1]));
+            for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]);
+                 ++p) {
+                vertical += points.volume[p] *
+                            (loads.pore_stress[p] - density * gravity * (height - points.position[2 * p + 1]));
                 mean += points.volume[p] * points.skeleton_stress[4 * p + 1];
                 horizontal += points.volume[p] * points.skeleton_stress[4 * p];
                 volume += points.volume[p];
             }
-            largest = std::max({largest, std::abs(mean - vertical) / volume, std::abs(horizontal - ratio * mean) / volume});
+            largest =
+                std::max({largest, std::abs(mean - vertical) / volume, std::abs(horizontal - ratio * mean) / volume});
         }
         return largest;
     }

@@ -15,8 +15,9 @@ struct State {
     Points points;
     bool operator==(const State& other) const {
         const auto fields = [](const State& s) {
-            return std::tie(s.mesh.position, s.points.position, s.points.volume, s.points.displacement, s.points.skeleton_stress,
-                            s.points.strain, s.points.plastic_strain, s.points.mobilised_strength);
+            return std::tie(s.mesh.position, s.points.position, s.points.volume, s.points.displacement,
+                            s.points.skeleton_stress, s.points.strain, s.points.plastic_strain,
+                            s.points.mobilised_strength);
         };
         return fields(*this) == fields(other);
     }
@@ -31,11 +32,16 @@ struct Block {
     LoadArrays loads;
 
     explicit Block(CellKind kind)
-        : mesh(grid_mesh(6, 6, kind, [](double x, double y) { return std::array<double, 2>{x, y}; })),
+        : mesh(grid_mesh(6, 6, kind,
+                         [](double x, double y) {
+                             return std::array<double, 2>{x, y};
+                         })),
           points(unstressed_points(mesh)),
-          prescribed(constrain(mesh, [](double x, double y) {
-              return std::array<bool, 2>{x < 1e-9 || y < 1e-9, y < 1e-9 || (y > 1 - 1e-9 && x < 0.5)};
-          })),
+          prescribed(
+              constrain(mesh,
+                        [](double x, double y) {
+                            return std::array<bool, 2>{x < 1e-9 || y < 1e-9, y < 1e-9 || (y > 1 - 1e-9 && x < 0.5)};
+                        })),
           equilibrium(mesh, points, {mohr_coulomb_solid(1e7, 0.3)}, prescribed, 9.81),
           loads(mesh, points) {
         std::fill(loads.strength.begin(), loads.strength.end(), ShearStrength{4e3, 25});
@@ -80,7 +86,8 @@ TEST_CASE("equilibrium: a restored run goes on with the same bits") {
     run.press(1e-3);
     run.equilibrium.accept();
     const State saved = run.state();
-    const std::vector<double> displacement(run.equilibrium.displacement().begin(), run.equilibrium.displacement().end());
+    const std::vector<double> displacement(run.equilibrium.displacement().begin(),
+                                           run.equilibrium.displacement().end());
     run.press(2e-3);
     run.equilibrium.accept();
 
@@ -105,7 +112,8 @@ TEST_CASE("equilibrium: a stress turns with the ground, in one step of 90 degree
         Points points = unstressed_points(mesh);
         for (size_t p = 0; p < points.volume.size(); ++p) {
             const std::array<double, 4> stress = {3e4, -1e4, 2e4, 0.5e4};
-            std::copy(stress.begin(), stress.end(), points.skeleton_stress.begin() + static_cast<std::ptrdiff_t>(4 * p));
+            std::copy(stress.begin(), stress.end(),
+                      points.skeleton_stress.begin() + static_cast<std::ptrdiff_t>(4 * p));
         }
         const std::vector<double> volume = points.volume;
         const std::vector<uint8_t> prescribed(mesh.position.size(), 1);
@@ -134,7 +142,9 @@ TEST_CASE("equilibrium: a stress turns with the ground, in one step of 90 degree
 }
 
 TEST_CASE("equilibrium: nodes, points and volumes follow the increment") {
-    Mesh mesh = grid_mesh(3, 2, CellKind::quads, [](double x, double y) { return std::array<double, 2>{x + 0.1 * y, y - 0.1 * x * y}; });
+    Mesh mesh = grid_mesh(3, 2, CellKind::quads, [](double x, double y) {
+        return std::array<double, 2>{x + 0.1 * y, y - 0.1 * x * y};
+    });
     Points points = unstressed_points(mesh);
     const std::vector<uint8_t> prescribed(mesh.position.size(), 1);
     Equilibrium equilibrium(mesh, points, {elastic_solid(1e7, 0.3)}, prescribed, 0);
@@ -143,7 +153,9 @@ TEST_CASE("equilibrium: nodes, points and volumes follow the increment") {
     equilibrium.solve(loads.view());
     equilibrium.accept();
     const Points expected = make_points(mesh);
-    for (size_t i = 0; i < expected.position.size(); ++i) CHECK(points.position[i] == doctest::Approx(expected.position[i]).epsilon(1e-12));
-    for (size_t p = 0; p < expected.volume.size(); ++p) CHECK(points.volume[p] == doctest::Approx(expected.volume[p]).epsilon(1e-12));
+    for (size_t i = 0; i < expected.position.size(); ++i)
+        CHECK(points.position[i] == doctest::Approx(expected.position[i]).epsilon(1e-12));
+    for (size_t p = 0; p < expected.volume.size(); ++p)
+        CHECK(points.volume[p] == doctest::Approx(expected.volume[p]).epsilon(1e-12));
     for (size_t i = 0; i < mesh.position.size(); ++i) CHECK(equilibrium.displacement()[i] == loads.prescribed[i]);
 }

@@ -10,8 +10,8 @@
 namespace talus::test {
 
 struct Footing {
-    double bearing_factor = 0;   ///< N_c: mean pressure under the strip over the cohesion, at the last step
-    double last_growth = 0;      ///< by how much it still grew over the last step, relative
+    double bearing_factor = 0;  ///< N_c: mean pressure under the strip over the cohesion, at the last step
+    double last_growth = 0;     ///< by how much it still grew over the last step, relative
     int32_t steps = 0;
     int32_t iterations = 0;
     int32_t factorisations = 0;

@@ -98,7 +98,8 @@ double HydraulicTable::pressure_of_saturation(double saturation) const {
 
 double HydraulicTable::pressure_of_potential(double potential) const {
     if (potential >= 0) return potential;
-    if (potential < rows_.front().potential) return pressure_of_row_value(potential, &Row::potential, &Row::potential_slope);
+    if (potential < rows_.front().potential)
+        return pressure_of_row_value(potential, &Row::potential, &Row::potential_slope);
     // On the chord potential = p (1 + slope p / 2).
     const double slope = (1.0 - rows_.front().permeability) / chord_;
     return 2.0 * potential / (1.0 + std::sqrt(std::max(0.0, 1.0 + 2.0 * slope * potential)));

@@ -26,10 +26,10 @@ struct Strength {
 
 struct Solid {
     SolidModel model = SolidModel::mohr_coulomb;
-    double young_modulus = 0;    ///< Pa
-    double poisson_ratio = 0;    ///< -
-    Strength strength;           ///< mohr_coulomb only
-    double dilation_angle = 0;   ///< degrees, mohr_coulomb only
+    double young_modulus = 0;                                           ///< Pa
+    double poisson_ratio = 0;                                           ///< -
+    Strength strength;                                                  ///< mohr_coulomb only
+    double dilation_angle = 0;                                          ///< degrees, mohr_coulomb only
     double tensile_strength = std::numeric_limits<double>::infinity();  ///< Pa; infinite: the cone's apex alone
 };
 

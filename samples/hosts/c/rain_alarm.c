@@ -26,13 +26,13 @@
 #define HOUR 3600.0
 
 typedef struct {
-    const char *name;
+    const char* name;
     int32_t number;
     int raised;
 } probe;
 
 typedef struct {
-    talus_engine *engine;
+    talus_engine* engine;
     probe probes[MAX_PROBES];
     int probe_count;
     int64_t events_seen;
@@ -50,15 +50,15 @@ static talus_status must(talus_status status) {
 }
 
 /* The engine's own remarks: Talus never prints, it tells its host. */
-static void log_line(void *user, int32_t level, const char *text) {
+static void log_line(void* user, int32_t level, const char* text) {
     (void)user;
     fprintf(stderr, "%s%s\n", level >= TALUS_LOG_WARNING ? "warning: " : "", text);
 }
 
-static void alarm_text(double time, const char *text) { printf("%7.2f h  ALARM  %s\n", time / HOUR, text); }
+static void alarm_text(double time, const char* text) { printf("%7.2f h  ALARM  %s\n", time / HOUR, text); }
 
 /* Step 5, look. A history's pointers are the engine's own memory: good until the next step, so they are used at once. */
-static void check_probe(watch *w, probe *p) {
+static void check_probe(watch* w, probe* p) {
     char text[160];
     talus_history history = TALUS_HISTORY_INIT;
     double pressure;
@@ -71,7 +71,7 @@ static void check_probe(watch *w, probe *p) {
     p->raised = pressure > PRESSURE_ALARM;
 }
 
-static void check_factor(watch *w, const talus_step_report *report) {
+static void check_factor(watch* w, const talus_step_report* report) {
     char text[160];
     const double factor = report->least_factor_of_safety; /* 0 where none is known: a rigid ground does not fail */
     const int low = factor > 0 && factor < FACTOR_ALARM;
@@ -82,7 +82,7 @@ static void check_factor(watch *w, const talus_step_report *report) {
     w->factor_raised = low;
 }
 
-static void check_events(watch *w) {
+static void check_events(watch* w) {
     int64_t count = 0;
     must(talus_engine_event_count(w->engine, &count));
     for (; w->events_seen < count; ++w->events_seen) {
@@ -94,7 +94,7 @@ static void check_events(watch *w) {
 
 /* Step 4, step: to the end of this line's interval. The engine chooses its own time steps within. Past the end of the pushed
    rain the last rate holds, so a line is pushed before its interval is stepped over. */
-static void catch_up(watch *w, double time) {
+static void catch_up(watch* w, double time) {
     talus_step_report report = TALUS_STEP_REPORT_INIT;
     int i;
     must(talus_engine_advance_to(w->engine, time, &report));
@@ -103,23 +103,24 @@ static void catch_up(watch *w, double time) {
     check_events(w);
 }
 
-static void summary(watch *w) {
+static void summary(watch* w) {
     talus_step_report report = TALUS_STEP_REPORT_INIT;
     int64_t hash = 0;
     must(talus_engine_report(w->engine, &report));
     must(talus_engine_hash(w->engine, &hash));
-    printf("%7.2f h  rain %.3f, infiltrated %.3f, run-off %.3f m3/m; largest displacement %.1f mm\n", report.time / HOUR,
-           report.water_rain, report.water_infiltrated, report.water_run_off, 1e3 * report.largest_displacement);
+    printf("%7.2f h  rain %.3f, infiltrated %.3f, run-off %.3f m3/m; largest displacement %.1f mm\n",
+           report.time / HOUR, report.water_rain, report.water_infiltrated, report.water_run_off,
+           1e3 * report.largest_displacement);
     printf("%d bad gauge values were replaced; state %016llx\n", (int)report.rain_substitutions,
            (unsigned long long)hash);
 }
 
 /* Reads "hours,millimetres per hour": from that time on it rains so much; the last line ends the rain. Lines that begin with
    # are remarks. 1 when a line was read, 0 at the end. */
-static int read_line(FILE *file, double *time, double *rate) {
+static int read_line(FILE* file, double* time, double* rate) {
     char line[256];
     while (fgets(line, sizeof line, file)) {
-        char *comma = strchr(line, ',');
+        char* comma = strchr(line, ',');
         if (line[0] == '#' || !comma) continue;
         *time = strtod(line, NULL) * HOUR;
         *rate = strtod(comma + 1, NULL) * MILLIMETRES_PER_HOUR; /* "nan" where the gauge was out of order */
@@ -128,7 +129,7 @@ static int read_line(FILE *file, double *time, double *rate) {
     return 0;
 }
 
-static void stream(watch *w, FILE *file) {
+static void stream(watch* w, FILE* file) {
     double time, rate;
     while (read_line(file, &time, &rate)) {
         /* The rain until now is known: let the engine catch up ... */
@@ -138,11 +139,11 @@ static void stream(watch *w, FILE *file) {
     }
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
     watch w = {0};
-    talus_scene *scene = NULL;
+    talus_scene* scene = NULL;
     talus_options options = TALUS_OPTIONS_INIT;
-    FILE *file;
+    FILE* file;
     int i;
     if (argc < 3 || argc > 3 + MAX_PROBES) {
         fprintf(stderr, "usage: rain_alarm SCENE RAIN.csv [PROBE ...]\n");
@@ -166,7 +167,7 @@ int main(int argc, char **argv) {
 
     /* Names become numbers once, outside the loop. */
     for (i = 3; i < argc; ++i) {
-        probe *p = &w.probes[w.probe_count++];
+        probe* p = &w.probes[w.probe_count++];
         p->name = argv[i];
         must(talus_engine_probe(w.engine, p->name, &p->number));
     }

@@ -15,8 +15,8 @@ static const char scene_text[] =
 
 int main(void) {
     const double rate = 1e-6;
-    talus_scene *scene = 0;
-    talus_engine *engine = 0;
+    talus_scene* scene = 0;
+    talus_engine* engine = 0;
     talus_step_report report = TALUS_STEP_REPORT_INIT;
     talus_field pressure = TALUS_FIELD_INIT;
 
