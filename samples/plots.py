@@ -74,7 +74,7 @@ def draw_contours(run, figure):
         wanted.append(("displacement, mm", displacement, "magma_r"))
     rows = figure.subplots(len(wanted), 1, sharex=True, squeeze=False)[:, 0]
     for axes, (title, values, colours) in zip(rows, wanted):
-        drawn = axes.tricontourf(mesh, values, levels=24, cmap=colours)
+        drawn = axes.tricontourf(mesh, values, levels=24, cmap=colours, extend="both")  # a value on the last level is drawn too
         figure.colorbar(drawn, ax=axes)
         if title.startswith("pore") and pressure.min() < 0 < pressure.max():
             axes.tricontour(mesh, values, levels=[0], colors="white", linewidths=1)
