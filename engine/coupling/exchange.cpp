@@ -11,8 +11,8 @@ namespace talus {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr double well_expected =
-    100.0;  // disagreement of the first iteration at which the next exchange is as long as this one
+// Disagreement of the first iteration at which the next exchange is as long as this one.
+constexpr double well_expected = 100.0;
 
 class Stopwatch {
 public:
