@@ -1,0 +1,57 @@
+"""What a run shows while it goes on: values out of their bounds, peaks where none may be, the water balance."""
+
+import numpy
+
+STATE_FIELDS = ("pressure", "saturation")
+
+
+def peak(values):
+    """How far a value inside stands above lower ones on both sides of it: 0 where the row falls, then rises."""
+    if len(values) < 3:
+        return 0.0
+    left, right = numpy.minimum.accumulate(values), numpy.minimum.accumulate(values[::-1])[::-1]
+    return float(numpy.max(values - numpy.maximum(left, right)))
+
+
+def missed(report):
+    """Water that the report's balances miss: the engine's own, the same from the report's waters, and the rain's."""
+    gained = report["water_infiltrated"] + report["water_inflow"] - report["water_seepage"] - report["water_drained"]
+    return max(abs(report["water_residual"]), abs(report["water_stored"] - report["water_initial"] - gained),
+               abs(report["water_rain"] - report["water_infiltrated"] - report["water_run_off"]))
+
+
+def balances(reports):
+    """The most water missed at any time, relative to the water moved by the end and to the most that was stored.
+
+    The water moved counts at least a millionth of that stored: less is rounding.
+    """
+    worst = max(map(missed, reports))
+    stored = max(reports[-1]["water_initial"], *(report["water_stored"] for report in reports))
+    moved = sum(abs(reports[-1][f"water_{name}"]) for name in ("rain", "inflow", "seepage", "drained"))
+    return {"balance": worst / max(moved, 1e-6 * stored, 1e-300), "balance_stored": worst / max(stored, 1e-300)}
+
+
+class Watch:
+    """Collects over the steps of a run."""
+
+    def __init__(self, engine, scene):
+        retention = [soil["hydraulics"]["retention"] for soil in scene["soils"]]
+        soils = engine.read("cell_soil").astype(int)
+        soils = numpy.repeat(soils, len(engine.read("saturation")) // len(soils))
+        self.least = numpy.array([curve.get("residualSaturation", 0.0) for curve in retention])[soils]
+        self.most = numpy.array([curve.get("maximumSaturation", 1.0) for curve in retention])[soils]
+        self.engine, self.fields = engine, engine.fields
+        self.seen = {"not_finite": [], "out_of_range": 0.0, "overshoot_saturation": 0.0, "overshoot_pressure": 0.0}
+        self.weight = 9810.0 * (engine.read("node_position").max() - engine.read("node_position").min())
+
+    def _raise(self, name, value):
+        self.seen[name] = max(self.seen[name], float(value))
+
+    def look(self):
+        for name in self.fields:
+            if not numpy.isfinite(self.engine.read(name)).all() and name not in self.seen["not_finite"]:
+                self.seen["not_finite"].append(name)
+        pressure, saturation = (self.engine.read(name) for name in STATE_FIELDS)
+        self._raise("out_of_range", numpy.maximum(self.least - saturation, saturation - self.most).max())
+        self._raise("overshoot_saturation", peak(saturation) / (self.most - self.least).max())
+        self._raise("overshoot_pressure", peak(pressure) / max(numpy.ptp(pressure), self.weight))
