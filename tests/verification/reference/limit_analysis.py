@@ -263,18 +263,18 @@ class LowerBound(Bound):
         rows, columns, values, known, right = [], [], [], [], []
         total = 0
 
-        def normal_terms(row, triangle, corner, nx, ny, weight):
-            """weight * (sigma . n) at a corner into rows row (x) and row + 1 (y)."""
+        def normal_terms(row, triangle, corner, nx, ny):
+            """sigma . n at a corner into rows row (x) and row + 1 (y)."""
             base = 3 * (3 * triangle + corner)
             for offset, (a0, a1, a2) in enumerate([(-nx / np.sin(angle), nx, ny), (-ny / np.sin(angle), -ny, nx)]):
                 for k, a in enumerate((a0, a1, a2)):
-                    rows.append(row + offset), columns.append(base + k), values.append(weight * a)
+                    rows.append(row + offset), columns.append(base + k), values.append(a)
             cohesive = pressure_part[triangle, corner]
-            known.append((row, weight * nx * cohesive)), known.append((row + 1, weight * ny * cohesive))
+            known.extend([(row, nx * cohesive), (row + 1, ny * cohesive)])
 
         for corner in range(3):  # equilibrium
             g = mesh.gradient[:, corner] * np.sqrt(mesh.area)[:, None]
-            normal_terms(2 * cells, cells, np.full(count, corner), g[:, 0], g[:, 1], 1.0)
+            normal_terms(2 * cells, cells, np.full(count, corner), g[:, 0], g[:, 1])
         right.append((np.arange(2 * count), (-self.force * np.sqrt(mesh.area)[:, None]).ravel()))
         total = 2 * count
         # tractions at both ends of each edge: local edge k of a triangle runs from corner k to corner k + 1
@@ -296,7 +296,7 @@ class LowerBound(Bound):
             corner = np.where(start == node, local, (local + 1) % 3)
             keep = used[edge]
             n = normal[edge] * sign[:, None]
-            normal_terms((first[edge] + 2 * end)[keep], triangle[keep], corner[keep], n[keep, 0], n[keep, 1], 1.0)
+            normal_terms((first[edge] + 2 * end)[keep], triangle[keep], corner[keep], n[keep, 0], n[keep, 1])
             ground = np.where(mesh.at_ground)[0]
             water = self.water[mesh.edges[ground, end]]  # total traction 0: sigma_bar . n = max(p, 0) n
             outward = np.zeros((len(mesh.edges), 2))
@@ -530,22 +530,22 @@ def pressures(scene_path, hours, out):
 
 
 def known(size=0.3):
-    """Stability numbers weight x height / cohesion of homogeneous dry slopes, against those quoted from Chen (1975)."""
+    """Stability numbers, weight x height / cohesion, of homogeneous dry slopes; the expected ones are from memory (Chen 1975)."""
     cohesion, height = 1e4, 10.0
-    for angle, friction, published in ((45, 30, 35.54), (45, 20, 16.16), (90, 20, 5.51)):
+    for angle, friction, expected in ((45, 30, 35.54), (45, 20, 16.16), (90, 20, 5.51)):
         run = height / np.tan(np.radians(angle)) if angle < 90 else 0.0
         ground = [(0, 15), (12, 15), (12 + run, 5), (26 + run, 5)]
         mesh = Mesh(ground, 0, size, 4 * size, (1, 2), 3.0)
-        weight = published * cohesion / height
+        weight = expected * cohesion / height
         count, tangent = len(mesh.nodes), np.tan(np.radians(friction))
         given = (mesh, np.full(count, cohesion), tangent, np.full(len(mesh.triangles), weight), np.zeros(count))
-        numbers = [published / bound(*given).multiplier(1.0) for bound in (LowerBound, UpperBound)]
+        numbers = [expected / bound(*given).multiplier(1.0) for bound in (LowerBound, UpperBound)]
         if angle < 90:
             x, y = np.array(ground, float).T
             strength = lambda u, v: (np.full(len(u), cohesion), 0.0 * u)
             spiral = Spiral(strength, lambda u, v: weight * (np.interp(u, x, y) - v), ground, tangent)
-            numbers.append(published / spiral.multiplier(1.0))
-        print(f"{angle} deg, phi {friction} deg: published {published}; lower, upper, spiral", *(f"{v:.2f}" for v in numbers))
+            numbers.append(expected / spiral.multiplier(1.0))
+        print(f"{angle} deg, phi {friction} deg: expected {expected}; lower, upper, spiral", *(f"{v:.2f}" for v in numbers))
 
 
 def main():
