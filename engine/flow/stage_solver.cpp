@@ -90,7 +90,6 @@ bool StageSolver::solve_steady(double tolerance, std::span<double> pressure) {
     const auto& held = system_.boundaries.held;
     for (size_t h = 0; h < held.size(); ++h)
         pressure[static_cast<size_t>(held[h].node)] = system_.forcing.held[h].at(0.0);
-    const std::vector<double> nothing(residual_.size(), 0.0);
     const auto imbalance = [&](std::span<const double> at) {
         system_.evaluate(0.0, at);
         merit_ = 0;
