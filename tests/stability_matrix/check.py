@@ -1,6 +1,7 @@
 """What a run shows while it goes on: values out of their bounds, peaks where none may be, the water balance."""
 
 import numpy
+from scenes import WATER_WEIGHT
 
 STATE_FIELDS = ("pressure", "saturation")
 
@@ -20,15 +21,18 @@ def missed(report):
                abs(report["water_rain"] - report["water_infiltrated"] - report["water_run_off"]))
 
 
+def moved(report):
+    return sum(abs(report[f"water_{name}"]) for name in ("rain", "inflow", "seepage", "drained"))
+
+
 def balances(reports):
-    """The most water missed at any time, relative to the water moved by the end and to the most that was stored.
+    """The most water missed at any time, relative to the water moved until then and to the most that was stored.
 
     The water moved counts at least a millionth of that stored: less is rounding.
     """
-    worst = max(map(missed, reports))
     stored = max(reports[-1]["water_initial"], *(report["water_stored"] for report in reports))
-    moved = sum(abs(reports[-1][f"water_{name}"]) for name in ("rain", "inflow", "seepage", "drained"))
-    return {"balance": worst / max(moved, 1e-6 * stored, 1e-300), "balance_stored": worst / max(stored, 1e-300)}
+    return {"balance": max(missed(report) / max(moved(report), 1e-6 * stored, 1e-300) for report in reports),
+            "balance_stored": max(map(missed, reports)) / max(stored, 1e-300)}
 
 
 class Watch:
@@ -42,7 +46,7 @@ class Watch:
         self.most = numpy.array([curve.get("maximumSaturation", 1.0) for curve in retention])[soils]
         self.engine, self.fields = engine, engine.fields
         self.seen = {"not_finite": [], "out_of_range": 0.0, "overshoot_saturation": 0.0, "overshoot_pressure": 0.0}
-        self.weight = 9810.0 * (engine.read("node_position").max() - engine.read("node_position").min())
+        self.weight = WATER_WEIGHT * (engine.read("node_position").max() - engine.read("node_position").min())
 
     def _raise(self, name, value):
         self.seen[name] = max(self.seen[name], float(value))

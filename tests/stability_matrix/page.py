@@ -18,7 +18,7 @@ INTRODUCTION = """\
 # Numerical stability on stiff and extreme cases
 
 `tests/stability` writes this page, its maps, and every row as JSON. Each case is a scene with a host's steps, run in a process
-of its own under a wall bound. It passes when it finishes with a water balance within 1e-8 of the water moved by the end (which
+of its own under a wall bound. It passes when it finishes with a water balance within 1e-8 of the water moved until then (which
 counts at least a millionth of the water stored), no NaN or infinity in any view, saturation within its soil's range, and no peak
 above 1e-6 inside the profile where physics has none; or when it is refused and a refusal is right. *Overshoot* is that of
 saturation and of pressure, each per unit of its range; a dash where physics allows peaks. *Price* is the wall time over that of
