@@ -5,7 +5,7 @@ import pathlib
 
 import talus
 from page import number, table
-from rows import Clock, scene_of
+from rows import Clock, read_scene
 from sweep import circumstances, in_a_process
 from variants import VARIANTS
 
@@ -50,7 +50,7 @@ def measure_or_say(scene):
 
 
 def run():
-    scene = scene_of(SCENE)
+    scene = read_scene(SCENE)
     rows = [{"variant": name, **in_a_process(measure_or_say, change(scene))} for name, change in VARIANTS.items()]
     return {"scene": SCENE, "hours": HOURS, "rows": rows, **circumstances()}
 

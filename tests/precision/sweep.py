@@ -2,7 +2,6 @@
 
 import importlib.util
 import json
-import multiprocessing
 import os
 import pathlib
 import platform
@@ -12,60 +11,25 @@ import sys
 import column
 import slopes
 import talus
-from rows import REFERENCES, scene_of
+from isolated import in_a_process
+from rows import REFERENCES, read_scene
+from settings import set_resolution, set_tolerance
 
 WALL_BOUND = 120.0  # s: a run that takes longer is stopped
 LEAST_MEASURED = 1.0  # s: shorter runs are repeated until they add up to this,
 MOST_REPEATS = 5  # but no more than this, and the quickest counts
-DEFAULT_TOLERANCE = 1e-3  # of a scene that says none, docs/scenes.md
-SECTION_LENGTHS = ("columnWidth", "bendColumnWidth", "surfaceCellHeight", "largestCellHeight")
-
-
-# --- settings ---
-
-def set_resolution(scene, coarsening):
-    """Changes the lengths of the scene's cells by a factor; returns the height of the uppermost cell."""
-    if "column" in scene["ground"]:
-        ground = scene["ground"]["column"]
-        ground["cells"] = round(ground["cells"] / coarsening)
-        return ground["height"] / ground["cells"]
-    ground = scene["ground"]["section"]
-    for name in SECTION_LENGTHS:
-        ground[name] *= coarsening
-    return ground["surfaceCellHeight"]
-
-
-def set_tolerance(scene, loosening):
-    numerics = scene.setdefault("numerics", {})
-    numerics["tolerance"] = float(f"{numerics.get('tolerance', DEFAULT_TOLERANCE) * loosening:.3g}")
-    return numerics["tolerance"]
 
 
 # --- one run ---
 
 def run(case, coarsening, loosening):
     """A row: setting, size, errors and seconds, or the reason why there are none."""
-    scene = scene_of(case)
+    scene = read_scene(case)
     setting = {"resolution_m": set_resolution(scene, coarsening), "tolerance": set_tolerance(scene, loosening)}
     row = {"case": case, "setting": setting, "default": coarsening == 1 and loosening == 1, "nodes": None, "errors": None,
            "wall_s": None, "cpu_s": None, "reason": None}
-    return {**row, **in_a_process(measure_or_say, case, scene)}
-
-
-def in_a_process(function, *arguments):
-    """What function returns, from a process that starts with nothing of an earlier run's and may be stopped."""
-    receiver, sender = multiprocessing.Pipe(duplex=False)
-    process = multiprocessing.Process(target=lambda: sender.send(function(*arguments)))
-    process.start()
-    sender.close()
-    try:
-        return receiver.recv() if receiver.poll(WALL_BOUND) else {"reason": f"not done in {WALL_BOUND:g} s"}
-    except EOFError:
-        process.join()
-        return {"reason": f"the process ended with {process.exitcode}"}
-    finally:
-        process.kill()
-        process.join()
+    outcome, result = in_a_process(WALL_BOUND, measure_or_say, case, scene)
+    return {**row, **(result if outcome == "finished" else {"reason": result})}
 
 
 def measure_or_say(case, scene):

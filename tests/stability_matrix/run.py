@@ -1,16 +1,16 @@
 """Runs a case in a process of its own and says how it ended: finished, refused, crashed or hung; and whether that is right."""
 
-import multiprocessing
 import time
 
 import numpy
 import talus
 from check import Watch, balances
+from isolated import in_a_process
+from settings import DEFAULT_TOLERANCE
 
 BALANCE = 1e-8
 MONOTONE = 1e-6
 RANGE = 1e-12  # of saturation: rounding
-TOLERANCE = 1e-3  # of a scene that says none, docs/scenes.md
 MOVED_SHARE = 0.99  # of the random search that may move by no more than the tolerance
 EMPTY = {"reason": None, "balance": None, "balance_stored": None, "substeps": None, "failures": None, "wall_s": None}
 
@@ -54,7 +54,7 @@ def simulate(case, tolerance=None):
 def figures_of(case):
     figures, saturation = simulate(case)
     if case.tightened and saturation is not None:
-        tight, other = simulate(case, TOLERANCE / 10)
+        tight, other = simulate(case, DEFAULT_TOLERANCE / 10)
         figures["moved"] = None if other is None else float(numpy.max(numpy.abs(saturation - other)))
         figures["reason"] = tight.get("reason") and f"with a tenth of the tolerance: {tight['reason']}"
     return figures
@@ -62,20 +62,8 @@ def figures_of(case):
 
 def isolated(case):
     """The figures from a process that may crash or hang."""
-    receiver, sender = multiprocessing.Pipe(duplex=False)
-    process = multiprocessing.Process(target=lambda: sender.send(figures_of(case)))
-    process.start()
-    sender.close()
-    try:
-        if receiver.poll(case.bound):
-            return receiver.recv()
-        return {"outcome": "hung", "reason": f"not done in {case.bound:g} s"}
-    except EOFError:
-        process.join()
-        return {"outcome": "crashed", "reason": f"the process ended with {process.exitcode}"}
-    finally:
-        process.kill()
-        process.join()
+    outcome, result = in_a_process(case.bound, figures_of, case)
+    return result if outcome == "finished" else {"outcome": outcome, "reason": result}
 
 
 def faults(case, row):
@@ -90,7 +78,7 @@ def faults(case, row):
         found.append(f"water balance {row['balance']:.2g} of the water moved, {row['balance_stored']:.2g} of that stored")
     if not row["out_of_range"] <= RANGE:
         found.append(f"saturation out of its range by {row['out_of_range']:.2g}")
-    if case.sweep != "random" and (row.get("moved") or 0.0) > TOLERANCE:  # of the random search a share may
+    if case.sweep != "random" and (row.get("moved") or 0.0) > DEFAULT_TOLERANCE:  # of the random search a share may
         found.append(f"moves by {row['moved']:.2g} of the range of saturation with a tenth of the tolerance")
     if case.monotone:
         found += [f"{name} {row[name]:.2g}" for name in ("overshoot_saturation", "overshoot_pressure")
@@ -119,7 +107,7 @@ def moved_row(rows):
     moved = [row["moved"] for row in rows if row["sweep"] == "random" and row.get("moved") is not None]
     if not moved:
         return None
-    share = sum(value <= TOLERANCE for value in moved) / len(moved)
+    share = sum(value <= DEFAULT_TOLERANCE for value in moved) / len(moved)
     text = f"{100 * share:.1f} % of {len(moved)} move by no more than the tolerance; the most {max(moved):.2g}"
     return {"case": "tolerance/tightened", "sweep": "tolerance", "place": (), "monotone": False, "why": "", **EMPTY,
             "outcome": "finished", "price": None, "faults": [] if share >= MOVED_SHARE else [text], "reason": text,

@@ -4,10 +4,10 @@ WATER_WEIGHT = 9810.0  # Pa/m
 MM_PER_HOUR = 1e-3 / 3600  # m/s
 
 
-def soil(name="soil", alpha=1e-4, n=2.0, conductivity=1e-5, porosity=0.4, residual=0.0, model="vanGenuchten"):
+def soil(name="soil", alpha=1e-4, n=2.0, conductivity=1e-5, porosity=0.4, residual=0.0):
     """A soil without a skeleton; alpha in 1/Pa, conductivity in m/s."""
     return {"name": name, "porosity": porosity,
-            "hydraulics": {"retention": {"model": model, "alpha": alpha, "n": n, "residualSaturation": residual},
+            "hydraulics": {"retention": {"model": "vanGenuchten", "alpha": alpha, "n": n, "residualSaturation": residual},
                            "conductivity": {"along": conductivity}}}
 
 

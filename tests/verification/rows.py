@@ -43,12 +43,7 @@ def engine_of(name):
 
 
 def engine_from(scene):
-    return talus.Engine(talus.Scene.from_json(json.dumps(scene)))
-
-
-def scene_of(name):
-    """A scene as a dict, to be changed."""
-    return json.loads((SCENES / f"{name}.json").read_text())
+    return talus.Engine(talus.Scene.from_json(scene))
 
 
 def row(case, quantity, norm, error, bound, unit, reference, clock):

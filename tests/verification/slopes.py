@@ -3,7 +3,8 @@
 import json
 
 import numpy
-from rows import REFERENCES, Clock, engine_of, engine_from, read_csv, row, scene_of
+from rows import REFERENCES, Clock, engine_from, engine_of, read_csv, read_scene, row
+from settings import set_resolution, set_tolerance
 
 HOUR = 3600.0
 PRESSURE_BOUND = 350.0  # Pa
@@ -91,12 +92,10 @@ def failure_rows():
 def settling_rows():
     """Near a factor of one: with the mesh displacements settle; with tolerance and step neither they nor the answer change."""
     case = "slope"
-    lengths = ("columnWidth", "bendColumnWidth", "surfaceCellHeight", "largestCellHeight")
 
     def coarser(factor):
-        scene = scene_of(case)
-        for name in lengths:
-            scene["ground"]["section"][name] *= factor
+        scene = read_scene(case)
+        set_resolution(scene, factor)
         return simulate(lambda: engine_from(scene))
 
     meshes = [coarser(factor) for factor in (2.0, 1.0, 0.5)]
@@ -107,8 +106,8 @@ def settling_rows():
     usual = meshes[1][0]
     for name, tightening, step in (("tolerance / 10", 0.1, HOUR), ("step of 6 h", 1.0, 6 * HOUR)):
         with Clock() as clock:
-            scene = scene_of(case)
-            scene["numerics"]["tolerance"] *= tightening
+            scene = read_scene(case)
+            set_tolerance(scene, tightening)
             engine = engine_from(scene)
             for k in range(1, round(36 * HOUR / step) + 1):
                 engine.advance_to(k * step)
