@@ -9,12 +9,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace talus {
 namespace {
 
 constexpr double stage_tolerance =
-    1e-9;  // of the pore volume: Newton converges quadratically, so this costs one iteration and keeps the balance
+    1e-9;  // of a node's pore volume: Newton converges quadratically, so this costs one iteration
+constexpr double balance = 1e-9;  // of the water that crossed the edge of the ground until then,
+constexpr double little = 1e-6;   // or, where less than this of the water stored did, of that: beyond it is rounding
 
 void check(int flag, const char* call) {
     if (flag != 0) throw Error(Status::internal, std::string("SUNDIALS ") + call + " returned " + std::to_string(flag));
@@ -63,6 +66,7 @@ struct FlowIntegrator::Arkode {
 
     void start(const FlowState& state);
     void make_memory();
+    [[nodiscard]] StageAccuracy accuracy() const;
     int solve_stage(N_Vector correction);
 
     static Arkode& of(SUNNonlinearSolver solver) { return *static_cast<Arkode*>(solver->content); }
@@ -147,6 +151,14 @@ int FlowIntegrator::Arkode::weights(N_Vector, N_Vector weight, void* user) {
     return 0;
 }
 
+// A host reads the water in the ground from the pressures, so Newton's remainder is what its balance misses.
+StageAccuracy FlowIntegrator::Arkode::accuracy() const {
+    const double* totals = N_VGetArrayPointer(variables) + target.size();
+    const double stored = std::accumulate(target.begin(), target.end(), 0.0);
+    const double moved = totals[rain_total] + totals[seepage_total] + totals[inflow_total] + totals[drained_total];
+    return {stage_tolerance, balance * std::max(moved, little * stored)};
+}
+
 // One stage z = known + gamma rate(z), where known = predicted + sdata. What the nodes hold after it is defined by the flows, not by the
 // retention curve: Newton's remainder stays in the stored water and enters the next stage's equation, so no water is ever lost to it.
 int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
@@ -162,7 +174,7 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
     const double* change = N_VGetArrayPointer(known);
     for (size_t i = 0; i < target.size(); ++i) target[i] = before[i] + change[i];
     if (stage_time <= accepted_time || stage_time >= t) stage = accepted;
-    if (!solver.solve(t, gamma, target, stage_tolerance, stage)) {
+    if (!solver.solve(t, gamma, target, accuracy(), stage)) {
         stage_time = accepted_time;
         return SUN_NLS_CONV_RECVR;
     }
@@ -237,7 +249,8 @@ bool FlowIntegrator::find_steady(FlowState& state) {
         arkode_->target.assign(system.stored().begin(), system.stored().end());
         trial = state.pressure;
         const double tolerance = stage_tolerance * std::max(1.0, step / long_step);
-        const bool solved = arkode_->solver.solve(0.0, step, arkode_->target, tolerance, trial);
+        const StageAccuracy accuracy{tolerance, std::numeric_limits<double>::infinity()};
+        const bool solved = arkode_->solver.solve(0.0, step, arkode_->target, accuracy, trial);
         const double imbalance = system.imbalance();
         if (solved) state.pressure = trial;
         if (solved && imbalance < steady) return true;

@@ -12,7 +12,8 @@ constexpr int most_steady_iterations = 100;
 constexpr int most_halvings = 6;
 constexpr double good_contraction = 0.2;  // of the residuals in one iteration, with which the factors at hand are kept
 constexpr double like_steps = 0.2;        // relative difference of two time steps that may share factors
-constexpr double round_off = 1e-10;       // a whole Newton step that changes no pressure by more leaves nothing to gain
+constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more has little left to gain,
+constexpr double gaining = 0.5;      // and nothing where it leaves more than this of the residuals
 
 double largest_relative_change(std::span<const double> before, std::span<const double> after) {
     double largest = 0;
@@ -31,27 +32,29 @@ StageSolver::StageSolver(FlowSystem& system)
       change_(residual_.size()),
       trial_(residual_.size()) {}
 
-// Largest residual relative to a node's pores; evaluates the system. Sets merit_ too.
+// Largest residual relative to a node's pores; evaluates the system. Sets merit_ and missing_ too.
 double StageSolver::residual(double t, double step, std::span<const double> target, std::span<const double> pressure) {
     system_.evaluate(t, pressure);
     double largest = 0;
-    merit_ = 0;
+    merit_ = missing_ = 0;
     for (size_t i = 0; i < residual_.size(); ++i) {
         residual_[i] = system_.is_held(i) ? 0.0 : system_.stored()[i] - step * system_.inflow()[i] - target[i];
         largest = std::max(largest, std::abs(residual_[i]) / system_.pore_volume()[i]);
         merit_ += std::abs(residual_[i]);
+        missing_ += residual_[i];
     }
     return std::isfinite(merit_) ? largest : std::numeric_limits<double>::infinity();
 }
 
-bool StageSolver::solve(double t, double step, std::span<const double> target, double tolerance,
+bool StageSolver::solve(double t, double step, std::span<const double> target, StageAccuracy accuracy,
                         std::span<double> pressure) {
     const auto& held = system_.boundaries.held;
     for (size_t h = 0; h < held.size(); ++h)
         pressure[static_cast<size_t>(held[h].node)] = system_.forcing.held[h].at(t);
     double error = residual(t, step, target, pressure);
+    const auto is_met = [&] { return error <= accuracy.node && std::abs(missing_) <= accuracy.sum; };
     bool is_stale = factorised_step_ <= 0 || std::abs(step / factorised_step_ - 1.0) > like_steps;
-    for (int iteration = 0; iteration < most_iterations && error > tolerance; ++iteration) {
+    for (int iteration = 0; iteration < most_iterations && !is_met(); ++iteration) {
         if (!std::isfinite(error)) return false;
         ++iterations_;
         const bool is_fresh = is_stale;
@@ -72,12 +75,12 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, d
             error = residual(t, step, target, pressure);
             continue;
         }
-        const bool settled = is_fresh && length == 1.0 && largest_relative_change(pressure, trial_) < round_off;
+        const bool is_settled = is_fresh && length == 1.0 && largest_relative_change(pressure, trial_) < round_off;
         std::copy(trial_.begin(), trial_.end(), pressure.begin());
         error = trial_error;
-        if (settled && std::isfinite(error)) return true;
+        if (is_settled && std::isfinite(error) && merit_ > gaining * merit) return true;
     }
-    return error <= tolerance;
+    return error <= accuracy.node;
 }
 
 bool StageSolver::factorise(double step) {

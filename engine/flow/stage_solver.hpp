@@ -7,13 +7,21 @@
 
 namespace talus {
 
+/// What may remain of a stage's equations.
+struct StageAccuracy {
+    double node = 0;  ///< at any node, of its pore volume
+    double sum = 0;   ///< over all nodes, m3: what the balance of the whole ground would miss
+};
+
 class StageSolver {
 public:
     explicit StageSolver(FlowSystem& system);
 
     /// Finds the pressures at t seconds into the advance, starting from those in `pressure`. Every free node's equation is met to
-    /// `tolerance` of its pore volume. On failure returns false and leaves `pressure` as the last iterate.
-    bool solve(double t, double step, std::span<const double> target, double tolerance, std::span<double> pressure);
+    /// `accuracy.node` of its pore volume, their sum to `accuracy.sum`, or both as well as round-off allows. On failure returns false and
+    /// leaves `pressure` as the last iterate.
+    bool solve(double t, double step, std::span<const double> target, StageAccuracy accuracy,
+               std::span<double> pressure);
 
     /// Finds the steady state, inflow = 0, from `pressure`, until the system's imbalance is below `tolerance`.
     bool solve_steady(double tolerance, std::span<double> pressure);
@@ -32,6 +40,7 @@ private:
     KluSolver solver_;
     std::vector<double> residual_, change_, trial_;
     double merit_ = 0;            // sum of the absolute residuals, m3
+    double missing_ = 0;          // sum of the residuals, m3
     double factorised_step_ = 0;  // s, of the factors at hand; 0: none
     int64_t iterations_ = 0;
 };
