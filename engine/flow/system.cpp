@@ -19,17 +19,22 @@ FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, Fl
         pore_stress_.resize(network.portions.size());
         pore_stress_slope_.resize(network.portions.size());
     }
-    soil_of_node_.assign(count, -1);
-    std::vector<double> largest(count, 0.0);
+    list_portions(count);
+}
+
+void FlowSystem::list_portions(size_t nodes) {
     std::vector<double> volume(network.portions.size(), 0.0);
     for (size_t corner = 0; corner < network.corner_portion.size(); ++corner)
         volume[static_cast<size_t>(network.corner_portion[corner])] += network.corner_volume[corner];
-    for (size_t i = 0; i < network.portions.size(); ++i) {
-        const auto node = static_cast<size_t>(network.portions[i].node);
-        if (volume[i] <= largest[node]) continue;
-        largest[node] = volume[i];
-        soil_of_node_[node] = network.portions[i].soil;
+    std::vector<std::vector<NodePortion>> of_node(nodes);
+    for (size_t i = 0; i < network.portions.size(); ++i)
+        of_node[static_cast<size_t>(network.portions[i].node)].push_back({volume[i], network.portions[i].soil});
+    for (auto& here : of_node) {
+        std::stable_sort(here.begin(), here.end(), [](const auto& a, const auto& b) { return a.volume > b.volume; });
+        node_portions_start_.push_back(node_portions_.size());
+        node_portions_.insert(node_portions_.end(), here.begin(), here.end());
     }
+    node_portions_start_.push_back(node_portions_.size());
 }
 
 SparseMatrix FlowSystem::make_matrix() {
@@ -308,11 +313,26 @@ double FlowSystem::imbalance() const {
     return largest;
 }
 
+// Of a node's soils, the one whose stored water changes most with the pressure: another may have none left to lose.
+const HydraulicTable& FlowSystem::storing_table(size_t node, double pressure) const {
+    const size_t first = node_portions_start_[node];
+    const size_t end = node_portions_start_[node + 1];
+    size_t storing = first;
+    double most = -1.0;
+    for (size_t i = first; i < end && end - first > 1; ++i) {
+        const NodePortion& portion = node_portions_[i];
+        const double capacity = portion.volume * tables_[static_cast<size_t>(portion.soil)].at(pressure).capacity;
+        if (capacity > most) storing = i;
+        most = std::max(most, capacity);
+    }
+    return tables_[static_cast<size_t>(node_portions_[storing].soil)];
+}
+
 // Brenner & Cances (2017): Newton in the variable whose curves are straight. Below the steepest point of the retention that is the
 // saturation, above it the pressure; the two join with the slope of that point. A node that dries
 // stops at saturation first, where the curves show their unsaturated slopes: those above it are flat and lead too far.
 double FlowSystem::moved(size_t node, double pressure, double change) const {
-    const HydraulicTable& table = tables_[static_cast<size_t>(soil_of_node_[node])];
+    const HydraulicTable& table = storing_table(node, pressure);
     const double turn = table.switch_pressure();
     if (pressure > 0 && pressure + change < 0) return 0.0;
     constexpr double straight = 1e-3;  // the curves are so over this share of the suction
@@ -331,7 +351,7 @@ double FlowSystem::moved(size_t node, double pressure, double change) const {
 }
 
 double FlowSystem::moved_steadily(size_t node, double pressure, double change) const {
-    const HydraulicTable& table = tables_[static_cast<size_t>(soil_of_node_[node])];
+    const HydraulicTable& table = tables_[static_cast<size_t>(node_portions_[node_portions_start_[node]].soil)];
     const HydraulicState here = table.at(pressure);
     constexpr double largest_loss = 0.9;  // of what is above the potential of dry soil
     const double least = here.potential - largest_loss * (here.potential - table.least_potential());

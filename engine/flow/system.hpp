@@ -88,6 +88,8 @@ public:
 
 private:
     void assemble(double storage, double step, SparseMatrix& matrix) const;
+    void list_portions(size_t nodes);
+    [[nodiscard]] const HydraulicTable& storing_table(size_t node, double pressure) const;
     void evaluate_rigid(std::span<const double> pressure);
     void evaluate_deforming(double t, std::span<const double> pressure);
     void evaluate_links(std::span<const double> pressure);
@@ -99,7 +101,12 @@ private:
     const Scene& scene_;
     std::vector<HydraulicTable> tables_;  // one a soil
     std::vector<char> held_node_;
-    std::vector<int32_t> soil_of_node_;  // whose table tells wet from dry: that of the largest portion
+    struct NodePortion {
+        double volume;  // m3, of ground
+        int32_t soil;
+    };
+    std::vector<NodePortion> node_portions_;   // of node 0, of node 1, ...; the largest first
+    std::vector<size_t> node_portions_start_;  // one a node, and the end
 
     // At the last evaluate()
     std::vector<HydraulicState> state_;  // per portion
