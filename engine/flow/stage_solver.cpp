@@ -75,6 +75,10 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
             error = residual(t, step, target, pressure);
             continue;
         }
+        if (is_fresh && error <= accuracy.node && !(merit_ < merit)) {  // the rest is round-off
+            residual(t, step, target, pressure);
+            return true;
+        }
         const bool is_settled = is_fresh && length == 1.0 && largest_relative_change(pressure, trial_) < round_off;
         std::copy(trial_.begin(), trial_.end(), pressure.begin());
         error = trial_error;

@@ -5,6 +5,25 @@
 #include <cmath>
 
 namespace talus {
+namespace {
+
+// Of `capacity` times the pressure's change, the table's own or larger.
+double moved_by_saturation(const HydraulicTable& table, double pressure, double change, double capacity) {
+    const double turn = table.switch_pressure();
+    const HydraulicState at_turn = table.at(turn);
+    if (at_turn.capacity <= 0) return pressure + change;
+    const double here = table.at(pressure).saturation;
+    const double target = pressure >= turn ? at_turn.saturation + at_turn.capacity * (pressure + change - turn)
+                                           : here + capacity * change;
+    if (target >= at_turn.saturation) return turn + (target - at_turn.saturation) / at_turn.capacity;
+    constexpr double largest_loss = 0.9;  // of what is above the residual saturation
+    const double mobile = std::min(here, at_turn.saturation) - table.residual_saturation();
+    const double least = table.residual_saturation() + (1.0 - largest_loss) * mobile;
+    return table.pressure_of_saturation(std::max(target, least));
+}
+
+}  // namespace
+
 FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, FlowBoundaries boundaries_in)
     : network(std::move(network_in)), boundaries(std::move(boundaries_in)), scene_(scene) {
     for (const Soil& soil : scene.soils) tables_.emplace_back(soil.hydraulics);
@@ -329,8 +348,9 @@ const HydraulicTable& FlowSystem::storing_table(size_t node, double pressure) co
 }
 
 // Brenner & Cances (2017): Newton in the variable whose curves are straight. Below the steepest point of the retention that is the
-// saturation, above it the pressure; the two join with the slope of that point. A node that dries
-// stops at saturation first, where the curves show their unsaturated slopes: those above it are flat and lead too far.
+// saturation, above it the pressure; the two join with the slope of that point. A node that dries stops at saturation first, where the
+// curves show their unsaturated slopes: those above it are flat and lead too far. So dry that water yields by its compressibility rather
+// than by leaving, it is the pressure again.
 double FlowSystem::moved(size_t node, double pressure, double change) const {
     const HydraulicTable& table = storing_table(node, pressure);
     const double turn = table.switch_pressure();
@@ -338,16 +358,12 @@ double FlowSystem::moved(size_t node, double pressure, double change) const {
     constexpr double straight = 1e-3;  // the curves are so over this share of the suction
     if (pressure >= turn && pressure + change >= turn) return pressure + change;
     if (std::abs(change) < straight * std::abs(pressure)) return pressure + change;
-    const HydraulicState at_turn = table.at(turn);
-    if (at_turn.capacity <= 0) return pressure + change;
     const HydraulicState here = table.at(pressure);
-    const double target = pressure >= turn ? at_turn.saturation + at_turn.capacity * (pressure + change - turn)
-                                           : here.saturation + here.capacity * change;
-    if (target >= at_turn.saturation) return turn + (target - at_turn.saturation) / at_turn.capacity;
-    constexpr double largest_loss = 0.9;  // of what is above the residual saturation
-    const double mobile = std::min(here.saturation, at_turn.saturation) - table.residual_saturation();
-    const double least = table.residual_saturation() + (1.0 - largest_loss) * mobile;
-    return table.pressure_of_saturation(std::max(target, least));
+    const double yielding = here.saturation / scene_.water.bulk_modulus;
+    if (pressure >= turn || here.capacity > yielding)
+        return moved_by_saturation(table, pressure, change, here.capacity);
+    if (change < 0) return pressure + change;
+    return std::min(pressure + change, moved_by_saturation(table, pressure, change, here.capacity + yielding));
 }
 
 double FlowSystem::moved_steadily(size_t node, double pressure, double change) const {
