@@ -15,10 +15,10 @@ constexpr double like_steps = 0.2;        // relative difference of two time ste
 constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more has little left to gain,
 constexpr double gaining = 0.5;      // and nothing where it leaves more than this of the residuals
 
-double largest_relative_change(std::span<const double> before, std::span<const double> after) {
+double largest_relative_change(std::span<const double> pressure, std::span<const double> change) {
     double largest = 0;
-    for (size_t i = 0; i < before.size(); ++i)
-        largest = std::max(largest, std::abs(after[i] - before[i]) / (1.0 + std::abs(before[i])));
+    for (size_t i = 0; i < pressure.size(); ++i)
+        largest = std::max(largest, std::abs(change[i]) / (1.0 + std::abs(pressure[i])));
     return largest;
 }
 
@@ -30,11 +30,14 @@ StageSolver::StageSolver(FlowSystem& system)
       solver_(matrix_),
       residual_(static_cast<size_t>(system.node_count())),
       change_(residual_.size()),
-      trial_(residual_.size()) {}
+      trial_(residual_.size()),
+      beyond_(residual_.size()),
+      trial_beyond_(residual_.size()) {}
 
 // Largest residual relative to a node's pores; evaluates the system. Sets merit_ and missing_ too.
-double StageSolver::residual(double t, double step, std::span<const double> target, std::span<const double> pressure) {
-    system_.evaluate(t, pressure);
+double StageSolver::residual(double t, double step, std::span<const double> target, std::span<const double> pressure,
+                             std::span<const double> beyond) {
+    system_.evaluate(t, pressure, beyond);
     double largest = 0;
     merit_ = missing_ = 0;
     for (size_t i = 0; i < residual_.size(); ++i) {
@@ -46,12 +49,24 @@ double StageSolver::residual(double t, double step, std::span<const double> targ
     return std::isfinite(merit_) ? largest : std::numeric_limits<double>::infinity();
 }
 
+// The trial: `length` of the Newton change from `pressure`. Where the change is added, what the sum rounds off is kept.
+void StageSolver::move(std::span<const double> pressure, double length) {
+    for (size_t i = 0; i < trial_.size(); ++i) {
+        const double change = length * change_[i];
+        const double sum = pressure[i] + change;
+        trial_[i] = system_.moved(i, pressure[i], change);
+        const bool is_added = trial_[i] == sum && std::abs(change) < std::abs(pressure[i]);
+        trial_beyond_[i] = is_added ? beyond_[i] + (change - (sum - pressure[i])) : 0.0;
+    }
+}
+
 bool StageSolver::solve(double t, double step, std::span<const double> target, StageAccuracy accuracy,
                         std::span<double> pressure) {
     const auto& held = system_.boundaries.held;
     for (size_t h = 0; h < held.size(); ++h)
         pressure[static_cast<size_t>(held[h].node)] = system_.forcing.held[h].at(t);
-    double error = residual(t, step, target, pressure);
+    std::fill(beyond_.begin(), beyond_.end(), 0.0);
+    double error = residual(t, step, target, pressure, beyond_);
     const auto is_met = [&] { return error <= accuracy.node && std::abs(missing_) <= accuracy.sum; };
     bool is_stale = factorised_step_ <= 0 || std::abs(step / factorised_step_ - 1.0) > like_steps;
     for (int iteration = 0; iteration < most_iterations && !is_met(); ++iteration) {
@@ -66,23 +81,21 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
         double length = 1.0;
         double trial_error = 0;
         for (int halving = 0; halving <= (is_fresh ? most_halvings : 0); ++halving, length *= 0.5) {
-            for (size_t i = 0; i < trial_.size(); ++i) trial_[i] = system_.moved(i, pressure[i], length * change_[i]);
-            trial_error = residual(t, step, target, trial_);
+            move(pressure, length);
+            trial_error = residual(t, step, target, trial_, trial_beyond_);
             if (merit_ < merit) break;
         }
         is_stale = !(merit_ < good_contraction * merit);
-        if (!is_fresh && !(merit_ < merit)) {  // the old factors lead nowhere: back, and anew
-            error = residual(t, step, target, pressure);
+        const bool is_round_off = is_fresh && largest_relative_change(pressure, change_) < round_off;
+        if (!(merit_ < merit) && (is_round_off || !is_fresh)) {  // back, and anew where the old factors led nowhere
+            error = residual(t, step, target, pressure, beyond_);
+            if (is_round_off) return std::isfinite(error);
             continue;
         }
-        if (is_fresh && error <= accuracy.node && !(merit_ < merit)) {  // the rest is round-off
-            residual(t, step, target, pressure);
-            return true;
-        }
-        const bool is_settled = is_fresh && length == 1.0 && largest_relative_change(pressure, trial_) < round_off;
         std::copy(trial_.begin(), trial_.end(), pressure.begin());
+        std::swap(beyond_, trial_beyond_);
         error = trial_error;
-        if (is_settled && std::isfinite(error) && merit_ > gaining * merit) return true;
+        if (is_round_off && merit_ > gaining * merit) return std::isfinite(error);
     }
     return error <= accuracy.node;
 }

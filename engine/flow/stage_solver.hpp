@@ -33,15 +33,18 @@ public:
 
 private:
     bool factorise(double step);
-    double residual(double t, double step, std::span<const double> target, std::span<const double> pressure);
+    double residual(double t, double step, std::span<const double> target, std::span<const double> pressure,
+                    std::span<const double> beyond);
+    void move(std::span<const double> pressure, double length);
 
     FlowSystem& system_;
     SparseMatrix matrix_;
     KluSolver solver_;
     std::vector<double> residual_, change_, trial_;
-    double merit_ = 0;            // sum of the absolute residuals, m3
-    double missing_ = 0;          // sum of the residuals, m3
-    double factorised_step_ = 0;  // s, of the factors at hand; 0: none
+    std::vector<double> beyond_, trial_beyond_;  // digits of the pressures beyond those of a double, Pa
+    double merit_ = 0;                           // sum of the absolute residuals, m3
+    double missing_ = 0;                         // sum of the residuals, m3
+    double factorised_step_ = 0;                 // s, of the factors at hand; 0: none
     int64_t iterations_ = 0;
 };
 

@@ -93,7 +93,7 @@ SparseMatrix FlowSystem::make_matrix() {
     return matrix;
 }
 
-void FlowSystem::evaluate(double t, std::span<const double> pressure) {
+void FlowSystem::evaluate(double t, std::span<const double> pressure, std::span<const double> beyond) {
     std::fill(stored_.begin(), stored_.end(), 0.0);
     std::fill(stored_slope_.begin(), stored_slope_.end(), 0.0);
     std::fill(inflow_.begin(), inflow_.end(), 0.0);
@@ -108,9 +108,9 @@ void FlowSystem::evaluate(double t, std::span<const double> pressure) {
     } else {
         evaluate_deforming(t, pressure);
     }
-    evaluate_links(pressure);
+    evaluate_links(pressure, beyond);
     evaluate_crossings();
-    evaluate_surface(pressure);
+    evaluate_surface(pressure, beyond);
     evaluate_flux(t);
 }
 
@@ -160,7 +160,7 @@ void FlowSystem::evaluate_deforming(double t, std::span<const double> pressure) 
     }
 }
 
-void FlowSystem::evaluate_links(std::span<const double> pressure) {
+void FlowSystem::evaluate_links(std::span<const double> pressure, std::span<const double> beyond) {
     for (size_t l = 0; l < network.links.size(); ++l) {
         const Portion& a = network.portions[static_cast<size_t>(network.links[l].portion_a)];
         const Portion& b = network.portions[static_cast<size_t>(network.links[l].portion_b)];
@@ -171,6 +171,7 @@ void FlowSystem::evaluate_links(std::span<const double> pressure) {
         const HydraulicTable& table = tables_[static_cast<size_t>(a.soil)];
         LinkState& link = link_state_[l];
         link.head = end_a.pressure - end_b.pressure + network.fall[l];
+        if (!beyond.empty()) link.head += beyond[static_cast<size_t>(a.node)] - beyond[static_cast<size_t>(b.node)];
         if (network.fall[l] >= 0) {
             const MeanPermeability mean = mean_permeability(table, end_a, end_b, network.fall[l]);
             link.permeability = mean.value;
@@ -203,7 +204,7 @@ void FlowSystem::add_flow(const Link& link, double flow) {
     inflow_[static_cast<size_t>(network.portions[static_cast<size_t>(link.portion_b)].node)] += flow;
 }
 
-void FlowSystem::evaluate_surface(std::span<const double> pressure) {
+void FlowSystem::evaluate_surface(std::span<const double> pressure, std::span<const double> beyond) {
     const double unit_weight = scene_.water.density * scene_.gravity;
     const double pond_pressure = unit_weight * scene_.surface.ponding_depth;
     for (size_t i = 0; i < boundaries.surface.size(); ++i) {
@@ -223,7 +224,7 @@ void FlowSystem::evaluate_surface(std::span<const double> pressure) {
         if (p < pond_pressure) stored_slope_[node] += surface.area / unit_weight;
         if (p <= pond_pressure) continue;
         const double conductance = (surface.area * surface.conductivity + rain) / (unit_weight * weir_thickness);
-        const double excess = conductance * (p - pond_pressure);
+        const double excess = conductance * (p - pond_pressure + (beyond.empty() ? 0.0 : beyond[node]));
         inflow_[node] -= excess;
         inflow_slope_[node] = -conductance;
         total_rates_[run_off_total] += std::min(excess, rain);

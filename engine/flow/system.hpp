@@ -51,8 +51,9 @@ public:
     /// A matrix with the pattern that assemble() fills.
     [[nodiscard]] SparseMatrix make_matrix();
 
-    /// Stored water and inflow at every node, t seconds into the advance, at pressure p (Pa, one a node).
-    void evaluate(double t, std::span<const double> pressure);
+    /// Stored water and inflow at every node, t seconds into the advance, at pressure p (Pa, one a node). `beyond` holds digits of the
+    /// pressures that a double has no place for, which long steps through thin cells turn into water; empty: none.
+    void evaluate(double t, std::span<const double> pressure, std::span<const double> beyond = {});
     /// d(stored - step inflow)/dp at the last evaluate(); the rows of held nodes are the identity.
     void assemble(double step, SparseMatrix& matrix) const;
     /// d(-inflow)/dp, likewise.
@@ -92,10 +93,10 @@ private:
     [[nodiscard]] const HydraulicTable& storing_table(size_t node, double pressure) const;
     void evaluate_rigid(std::span<const double> pressure);
     void evaluate_deforming(double t, std::span<const double> pressure);
-    void evaluate_links(std::span<const double> pressure);
+    void evaluate_links(std::span<const double> pressure, std::span<const double> beyond);
     void evaluate_crossings();
     void add_flow(const Link& link, double flow);
-    void evaluate_surface(std::span<const double> pressure);
+    void evaluate_surface(std::span<const double> pressure, std::span<const double> beyond);
     void evaluate_flux(double t);
 
     const Scene& scene_;
