@@ -3,8 +3,6 @@
 import numpy
 from scenes import WATER_WEIGHT
 
-STATE_FIELDS = ("pressure", "saturation")
-
 
 def peak(values):
     """How far a value inside stands above lower ones on both sides of it: 0 where the row falls, then rises."""
@@ -35,17 +33,25 @@ def balances(reports):
             "balance_stored": max(map(missed, reports)) / max(stored, 1e-300)}
 
 
+def soil_of_points(engine):
+    """Number of the soil of each material point: a cell has as many points as nodes."""
+    return numpy.repeat(engine.read("cell_soil").astype(int), numpy.diff(engine.read("cell_start").astype(int)))
+
+
 class Watch:
     """Collects over the steps of a run."""
 
     def __init__(self, engine, scene):
+        self.engine, self.fields = engine, engine.fields
+        self.is_wet = "saturation" in self.fields
+        self.is_column = engine.describe()["dimension"] == 1
+        self.seen = {"not_finite": [], "out_of_range": 0.0, "overshoot_saturation": 0.0, "overshoot_pressure": 0.0}
+        if not self.is_wet:
+            return
         retention = [soil["hydraulics"]["retention"] for soil in scene["soils"]]
-        soils = engine.read("cell_soil").astype(int)
-        soils = numpy.repeat(soils, len(engine.read("saturation")) // len(soils))
+        soils = soil_of_points(engine)
         self.least = numpy.array([curve.get("residualSaturation", 0.0) for curve in retention])[soils]
         self.most = numpy.array([curve.get("maximumSaturation", 1.0) for curve in retention])[soils]
-        self.engine, self.fields = engine, engine.fields
-        self.seen = {"not_finite": [], "out_of_range": 0.0, "overshoot_saturation": 0.0, "overshoot_pressure": 0.0}
         self.weight = WATER_WEIGHT * (engine.read("node_position").max() - engine.read("node_position").min())
 
     def _raise(self, name, value):
@@ -55,7 +61,16 @@ class Watch:
         for name in self.fields:
             if not numpy.isfinite(self.engine.read(name)).all() and name not in self.seen["not_finite"]:
                 self.seen["not_finite"].append(name)
-        pressure, saturation = (self.engine.read(name) for name in STATE_FIELDS)
+        if self.is_wet:
+            self.look_at_water()
+
+    def look_at_water(self):
+        pressure, saturation = self.engine.read("pressure"), self.engine.read("saturation")
         self._raise("out_of_range", numpy.maximum(self.least - saturation, saturation - self.most).max())
-        self._raise("overshoot_saturation", peak(saturation) / (self.most - self.least).max())
-        self._raise("overshoot_pressure", peak(pressure) / max(numpy.ptp(pressure), self.weight))
+        if self.is_column:
+            self._raise("overshoot_saturation", peak(saturation) / (self.most - self.least).max())
+            self._raise("overshoot_pressure", peak(pressure) / max(numpy.ptp(pressure), self.weight))
+
+    def effective_saturation(self):
+        """In the middle of what its soil can hold, or None of dry ground."""
+        return self.engine.read("saturation") / (self.most - self.least) if self.is_wet else None

@@ -15,11 +15,24 @@ MOVED_SHARE = 0.99  # of the random search that may move by no more than the tol
 EMPTY = {"reason": None, "balance": None, "balance_stored": None, "substeps": None, "failures": None, "wall_s": None}
 
 
+def is_refused(engine, seconds):
+    """Whether the step is refused and the state stands, bit for bit."""
+    before = engine.hash()
+    try:
+        engine.step(seconds)
+    except talus.Error:
+        return engine.hash() == before
+    return False
+
+
 def act(engine, action, *arguments):
     """One entry of a case's steps; returns the reports of it."""
     if action == "step":
         return [engine.step(arguments[0]) for _ in range(arguments[1])]
-    if action == "rain":
+    if action == "refused_step":
+        if not all(is_refused(engine, arguments[0]) for _ in range(arguments[1])):
+            raise AssertionError(f"a step of {arguments[0]:g} s was done, or changed the state")
+    elif action == "rain":
         engine.set_rain("rain", *arguments)
     else:
         engine.push_flow_value(arguments[0], engine.time, arguments[1])
@@ -36,7 +49,8 @@ def march(case, engine, watch):
         watch.look()
     return {"substeps": sum(report["flow_substeps"] for report in reports),
             "failures": sum(report["flow_failures"] for report in reports),
-            **balances(reports), "wall_s": wall}
+            **balances(reports), "wall_s": wall,
+            "equilibrium_lost": any(event["kind"] == "loss_of_equilibrium" for event in engine.events())}
 
 
 def simulate(case, tolerance=None):
@@ -48,7 +62,7 @@ def simulate(case, tolerance=None):
         figures = march(case, engine, watch)
     except talus.Error as error:
         return {"outcome": "refused", "reason": f"{type(error).__name__}: {error}"}, None
-    return {"outcome": "finished", **figures, **watch.seen}, engine.read("saturation") / (watch.most - watch.least)
+    return {"outcome": "finished", **figures, **watch.seen}, watch.effective_saturation()
 
 
 def figures_of(case):
@@ -78,6 +92,8 @@ def faults(case, row):
         found.append(f"water balance {row['balance']:.2g} of the water moved, {row['balance_stored']:.2g} of that stored")
     if not row["out_of_range"] <= RANGE:
         found.append(f"saturation out of its range by {row['out_of_range']:.2g}")
+    if case.loses not in (None, row["equilibrium_lost"]):
+        found.append("equilibrium is " + ("lost" if row["equilibrium_lost"] else "not lost, beyond the limit load"))
     if case.sweep != "random" and (row.get("moved") or 0.0) > DEFAULT_TOLERANCE:  # of the random search a share may
         found.append(f"moves by {row['moved']:.2g} of the range of saturation with a tenth of the tolerance")
     if case.monotone:

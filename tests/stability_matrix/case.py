@@ -1,0 +1,42 @@
+"""What a case is, and a sweep of them; times in seconds."""
+
+from dataclasses import dataclass
+
+HOUR = 3600.0
+DAY = 24 * HOUR
+YEAR = 365.25 * DAY
+
+
+@dataclass(frozen=True)
+class Case:
+    name: str  # sweep/values
+    scene: dict
+    steps: list  # ["step", s, times], ["refused_step", s, times], ["rain", m/s], ["flow", boundary, value]
+    monotone: bool = False  # no peak inside the column, of saturation or pressure
+    refusal: str = ""  # text of the only refusal that is right; the case must be refused so
+    why: str = ""  # why that refusal is right
+    loses: bool | None = None  # whether equilibrium must be lost, where that is known
+    place: tuple = ()  # its two parameters on the map of the sweep
+    bound: float = 20.0  # s of wall time
+    tightened: bool = False  # run again with a tenth of the tolerance
+
+    @property
+    def sweep(self):
+        return self.name.split("/")[0]
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Two parameters, their benign values first; `scene_of` takes one of each."""
+    name: str
+    labels: tuple
+    values: tuple
+    scene_of: object
+    steps: list
+    monotone: bool = True
+
+    def cases(self):
+        for first in self.values[0]:
+            for second in self.values[1]:
+                yield Case(f"{self.name}/{first:g}_{second:g}", self.scene_of(first, second), self.steps, self.monotone,
+                           place=(first, second))
