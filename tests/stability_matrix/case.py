@@ -15,6 +15,7 @@ class Case:
     monotone: bool = False  # no peak inside the column, of saturation or pressure
     refusal: str = ""  # text of the only refusal that is right; the case must be refused so
     why: str = ""  # why that refusal is right
+    settles: bool = False  # increments of displacement and pressure must not grow from step to step
     loses: bool | None = None  # whether equilibrium must be lost, where that is known
     place: tuple = ()  # its two parameters on the map of the sweep
     bound: float = 20.0  # s of wall time
@@ -32,11 +33,13 @@ class Sweep:
     labels: tuple
     values: tuple
     scene_of: object
-    steps: list
+    steps: object  # a case's, or a function that takes one of each
     monotone: bool = True
+    settles: bool = False
 
     def cases(self):
         for first in self.values[0]:
             for second in self.values[1]:
-                yield Case(f"{self.name}/{first:g}_{second:g}", self.scene_of(first, second), self.steps, self.monotone,
-                           place=(first, second))
+                steps = self.steps(first, second) if callable(self.steps) else self.steps
+                yield Case(f"{self.name}/{first:g}_{second:g}", self.scene_of(first, second), steps, self.monotone,
+                           settles=self.settles, place=(first, second))

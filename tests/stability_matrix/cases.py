@@ -9,6 +9,8 @@ import time_cases
 QUICK = ("n_alpha/2_0.1", "n_alpha/1.03_0.0001", "fill/beyond", "rain/on_off_on", "time/tiny_steps", "time/zero_step",
          "limit_heave/net_0.98", "limit_heave/net_1.02")
 
+SWEEPS = flow_cases.SWEEPS + solid_cases.SWEEPS
+
 
 def matrix():
     for topic in (flow_cases, time_cases, solid_cases, ground_cases, found_cases):

@@ -2,6 +2,7 @@
 
 import numpy
 from scenes import WATER_WEIGHT
+from strength import YieldCheck
 
 
 def peak(values):
@@ -38,6 +39,10 @@ def soil_of_points(engine):
     return numpy.repeat(engine.read("cell_soil").astype(int), numpy.diff(engine.read("cell_start").astype(int)))
 
 
+def has_lost_equilibrium(engine):
+    return any(event["kind"] == "loss_of_equilibrium" for event in engine.events())
+
+
 class Watch:
     """Collects over the steps of a run."""
 
@@ -45,7 +50,9 @@ class Watch:
         self.engine, self.fields = engine, engine.fields
         self.is_wet = "saturation" in self.fields
         self.is_column = engine.describe()["dimension"] == 1
-        self.seen = {"not_finite": [], "out_of_range": 0.0, "overshoot_saturation": 0.0, "overshoot_pressure": 0.0}
+        self.seen = {"not_finite": [], "out_of_range": 0.0, "overshoot_saturation": 0.0, "overshoot_pressure": 0.0,
+                     "yield_exceeded": 0.0}
+        self.yield_check = YieldCheck(engine, scene, soil_of_points(engine)) if "net_stress" in self.fields else None
         if not self.is_wet:
             return
         retention = [soil["hydraulics"]["retention"] for soil in scene["soils"]]
@@ -63,6 +70,8 @@ class Watch:
                 self.seen["not_finite"].append(name)
         if self.is_wet:
             self.look_at_water()
+        if self.yield_check and not has_lost_equilibrium(self.engine):  # beyond it the stress stands and the suction goes on
+            self._raise("yield_exceeded", self.yield_check())
 
     def look_at_water(self):
         pressure, saturation = self.engine.read("pressure"), self.engine.read("saturation")

@@ -4,13 +4,16 @@ import time
 
 import numpy
 import talus
-from check import Watch, balances
+from check import Watch, balances, has_lost_equilibrium
 from isolated import in_a_process
 from settings import DEFAULT_TOLERANCE
+from settling import Settling
 
 BALANCE = 1e-8
 MONOTONE = 1e-6
 RANGE = 1e-12  # of saturation: rounding
+GROWTH = 1.0  # of an increment from step to step
+YIELD = 1e-6  # of the strength
 MOVED_SHARE = 0.99  # of the random search that may move by no more than the tolerance
 EMPTY = {"reason": None, "balance": None, "balance_stored": None, "substeps": None, "failures": None, "wall_s": None}
 
@@ -41,16 +44,18 @@ def act(engine, action, *arguments):
 
 def march(case, engine, watch):
     """Substeps, failures and water balances, with the wall seconds of the engine alone."""
-    reports, wall = [], 0.0
+    reports, wall, settling = [], 0.0, Settling(engine) if case.settles else None
     for action in case.steps:
         begun = time.perf_counter()
         reports += act(engine, *action)
         wall += time.perf_counter() - begun
         watch.look()
+        if settling:
+            settling.look()
     return {"substeps": sum(report["flow_substeps"] for report in reports),
             "failures": sum(report["flow_failures"] for report in reports),
             **balances(reports), "wall_s": wall,
-            "equilibrium_lost": any(event["kind"] == "loss_of_equilibrium" for event in engine.events())}
+            "equilibrium_lost": has_lost_equilibrium(engine), "growth": settling and settling.growth()}
 
 
 def simulate(case, tolerance=None):
@@ -92,6 +97,10 @@ def faults(case, row):
         found.append(f"water balance {row['balance']:.2g} of the water moved, {row['balance_stored']:.2g} of that stored")
     if not row["out_of_range"] <= RANGE:
         found.append(f"saturation out of its range by {row['out_of_range']:.2g}")
+    if not row["yield_exceeded"] <= YIELD:
+        found.append(f"yield exceeded by {row['yield_exceeded']:.2g} of the strength")
+    if case.settles and not row["growth"] <= GROWTH:
+        found.append(f"increments grow by {row['growth']:.3g} from step to step")
     if case.loses not in (None, row["equilibrium_lost"]):
         found.append("equilibrium is " + ("lost" if row["equilibrium_lost"] else "not lost, beyond the limit load"))
     if case.sweep != "random" and (row.get("moved") or 0.0) > DEFAULT_TOLERANCE:  # of the random search a share may

@@ -3,12 +3,17 @@
 import math
 
 from block_scenes import compressive_strength, dry_block, heaving_column, wetted_block
-from case import DAY, HOUR, Case
+from case import DAY, HOUR, Case, Sweep
 from scenes import earth, elastic_soil, loaded_column, small_slope
 
 STORM = [["step", HOUR, 12]]
 LIMIT_SHARE = 0.6434  # of 3 kPa and tan 30 degrees, with which the small slope just stands a storm: by bisection with the engine
 RATIOS = (0.98, 1.02)  # of the load to the limit load, or of the strength to that needed
+SWEEPS = (
+    Sweep("split", ("K, m/s", "step, s"), ((1e-9, 1e-13, 1e-18), (1e4, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e6, 1e8)),
+          lambda conductivity, step: loaded_column(conductivity, bulk_modulus=1e13, ramp=step),
+          lambda conductivity, step: [["step", step, 1]] * 30, monotone=False, settles=True),
+)
 
 
 def undrained_cases():
@@ -90,8 +95,24 @@ def limit_cases():
                        loses=loses)
 
 
+def weak_cases():
+    """Ground that yields widely, some of it until it fails."""
+    kinds = {"net": {}, "bishop": {"stress": "bishop"}, "tensile_100": {"tensile": 100.0}, "no_tension": {"tensile": 0.0},
+             "dilation": {"dilation": 15},
+             "constant": {"strength": {"model": "constant"}},
+             "fredlund": {"strength": {"model": "fredlund", "suctionFrictionAngle": 15}},
+             "exponential": {"strength": {"model": "exponential", "cohesionGain": 2e3, "cohesionRate": 10, "frictionGain": 10}}}
+    for name, entries in kinds.items():
+        for cohesion, friction in ((2500, 24), (1000, 18)):
+            yield Case(f"weak/{name}_{cohesion}", small_slope(cohesion=cohesion, friction=friction, rain=1e-5, **entries),
+                       [["step", HOUR, 1]] * 24)
+
+
 def cases():
+    for sweep in SWEEPS:
+        yield from sweep.cases()
     yield from undrained_cases()
     yield from strength_cases()
+    yield from weak_cases()
     yield from stiffness_cases()
     yield from limit_cases()
