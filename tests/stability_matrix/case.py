@@ -14,6 +14,7 @@ class Case:
     steps: list  # ["step", s, times], ["refused_step", s, times], ["rain", m/s], ["flow", boundary, value]
     monotone: bool = False  # no peak inside the column, of saturation or pressure
     refusal: str = ""  # text of the only refusal that is right; the case must be refused so
+    may_be_refused: str = ""  # text of a refusal that is as right as an end
     why: str = ""  # why that refusal is right
     settles: bool = False  # increments of displacement and pressure must not grow from step to step
     loses: bool | None = None  # whether equilibrium must be lost, where that is known

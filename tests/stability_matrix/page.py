@@ -1,6 +1,5 @@
 """docs/stability.md and its maps from the rows."""
 
-import re
 import statistics
 from collections import Counter
 
@@ -10,6 +9,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from cases import SWEEPS
+from faults import kind
 from matplotlib.colors import LogNorm
 
 MOST_RANDOM = 20  # failures of the random search in the table
@@ -64,7 +64,7 @@ def kinds(rows):
     """How many of the random search failed for which reason, numbers apart."""
     passed = sum(row["passed"] for row in rows)
     yield f"{len(rows)} scenes, {passed} passed. The failures by kind, then the first {MOST_RANDOM} of them:\n"
-    found = Counter(re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", fault) for row in rows for fault in row["faults"])
+    found = Counter(kind(fault) for row in rows for fault in row["faults"])
     yield from (f"- {count} times: {text}" for text, count in found.most_common())
     yield ""
 

@@ -5,16 +5,12 @@ import time
 import numpy
 import talus
 from check import Watch, balances, has_lost_equilibrium
+from claims import tested
+from faults import faults
 from isolated import in_a_process
 from settings import DEFAULT_TOLERANCE
 from settling import Settling
 
-BALANCE = 1e-8
-MONOTONE = 1e-6
-RANGE = 1e-12  # of saturation: rounding
-GROWTH = 1.0  # of an increment from step to step
-YIELD = 1e-6  # of the strength
-MOVED_SHARE = 0.99  # of the random search that may move by no more than the tolerance
 EMPTY = {"reason": None, "balance": None, "balance_stored": None, "substeps": None, "failures": None, "wall_s": None}
 
 
@@ -54,7 +50,7 @@ def march(case, engine, watch):
             settling.look()
     return {"substeps": sum(report["flow_substeps"] for report in reports),
             "failures": sum(report["flow_failures"] for report in reports),
-            **balances(reports), "wall_s": wall,
+            **balances(reports or [engine.report()]), "wall_s": wall,
             "equilibrium_lost": has_lost_equilibrium(engine), "growth": settling and settling.growth()}
 
 
@@ -66,7 +62,7 @@ def simulate(case, tolerance=None):
         watch.look()
         figures = march(case, engine, watch)
     except talus.Error as error:
-        return {"outcome": "refused", "reason": f"{type(error).__name__}: {error}"}, None
+        return {"outcome": "refused", "reason": tested(case.scene, f"{type(error).__name__}: {error}")}, None
     return {"outcome": "finished", **figures, **watch.seen}, watch.effective_saturation()
 
 
@@ -85,32 +81,6 @@ def isolated(case):
     return result if outcome == "finished" else {"outcome": outcome, "reason": result}
 
 
-def faults(case, row):
-    """What is wrong with the row, one text a fault."""
-    if case.refusal:
-        right = row["outcome"] == "refused" and case.refusal in row["reason"]
-        return [] if right else [f"not refused for '{case.refusal}'"]
-    if row["outcome"] != "finished" or row["reason"]:
-        return [row["reason"].splitlines()[0]]  # refused, crashed, hung; or refused with a tenth of the tolerance
-    found = [f"not finite: {name}" for name in row["not_finite"]]
-    if not row["balance"] <= BALANCE:
-        found.append(f"water balance {row['balance']:.2g} of the water moved, {row['balance_stored']:.2g} of that stored")
-    if not row["out_of_range"] <= RANGE:
-        found.append(f"saturation out of its range by {row['out_of_range']:.2g}")
-    if not row["yield_exceeded"] <= YIELD:
-        found.append(f"yield exceeded by {row['yield_exceeded']:.2g} of the strength")
-    if case.settles and not row["growth"] <= GROWTH:
-        found.append(f"increments grow by {row['growth']:.3g} from step to step")
-    if case.loses not in (None, row["equilibrium_lost"]):
-        found.append("equilibrium is " + ("lost" if row["equilibrium_lost"] else "not lost, beyond the limit load"))
-    if case.sweep != "random" and (row.get("moved") or 0.0) > DEFAULT_TOLERANCE:  # of the random search a share may
-        found.append(f"moves by {row['moved']:.2g} of the range of saturation with a tenth of the tolerance")
-    if case.monotone:
-        found += [f"{name} {row[name]:.2g}" for name in ("overshoot_saturation", "overshoot_pressure")
-                  if not row[name] <= MONOTONE]
-    return found
-
-
 def run(case):
     row = {"case": case.name, "sweep": case.sweep, "place": case.place, "monotone": case.monotone, "why": case.why,
            **EMPTY, **isolated(case)}
@@ -125,15 +95,3 @@ def price(rows):
     for row in rows:
         base = benign.setdefault(row["sweep"], row["wall_s"])
         row["price"] = row["wall_s"] / base if row["wall_s"] and base and row["sweep"] not in ("random", "found") else None
-
-
-def moved_row(rows):
-    """The random search's share that a tenth of the tolerance moves by no more than the tolerance; None without a search."""
-    moved = [row["moved"] for row in rows if row["sweep"] == "random" and row.get("moved") is not None]
-    if not moved:
-        return None
-    share = sum(value <= DEFAULT_TOLERANCE for value in moved) / len(moved)
-    text = f"{100 * share:.1f} % of {len(moved)} move by no more than the tolerance; the most {max(moved):.2g}"
-    return {"case": "tolerance/tightened", "sweep": "tolerance", "place": (), "monotone": False, "why": "", **EMPTY,
-            "outcome": "finished", "price": None, "faults": [] if share >= MOVED_SHARE else [text], "reason": text,
-            "passed": share >= MOVED_SHARE}
