@@ -16,8 +16,8 @@ def peak(values):
 def missed(report):
     """Water that the report's balances miss: the engine's own, the same from the report's waters, and the rain's."""
     gained = report["water_infiltrated"] + report["water_inflow"] - report["water_seepage"] - report["water_drained"]
-    return max(abs(report["water_residual"]), abs(report["water_stored"] - report["water_initial"] - gained),
-               abs(report["water_rain"] - report["water_infiltrated"] - report["water_run_off"]))
+    return numpy.max(numpy.abs([report["water_residual"], report["water_stored"] - report["water_initial"] - gained,
+                                report["water_rain"] - report["water_infiltrated"] - report["water_run_off"]]))
 
 
 def moved(report):
@@ -30,8 +30,9 @@ def balances(reports):
     The water moved counts at least a millionth of that stored: less is rounding.
     """
     stored = max(reports[-1]["water_initial"], *(report["water_stored"] for report in reports))
-    return {"balance": max(missed(report) / max(moved(report), 1e-6 * stored, 1e-300) for report in reports),
-            "balance_stored": max(map(missed, reports)) / max(stored, 1e-300)}
+    shares = [missed(report) / max(moved(report), 1e-6 * stored, 1e-300) for report in reports]
+    return {"balance": float(numpy.max(shares)),  # NaN stays, which max() would lose
+            "balance_stored": float(numpy.max([missed(report) for report in reports]) / max(stored, 1e-300))}
 
 
 def soil_of_points(engine):
@@ -62,7 +63,7 @@ class Watch:
         self.weight = WATER_WEIGHT * (engine.read("node_position").max() - engine.read("node_position").min())
 
     def _raise(self, name, value):
-        self.seen[name] = max(self.seen[name], float(value))
+        self.seen[name] = float(numpy.maximum(self.seen[name], value))  # NaN stays
 
     def look(self):
         for name in self.fields:

@@ -46,7 +46,7 @@ def of_the_case(case, row):
         yield f"increments grow by {row['growth']:.3g} from step to step"
     if case.loses not in (None, row["equilibrium_lost"]):
         yield "equilibrium is " + ("lost" if row["equilibrium_lost"] else "not lost, beyond the limit load")
-    if case.sweep != "random" and (row.get("moved") or 0.0) > DEFAULT_TOLERANCE:  # of the random search a share may
+    if case.sweep != "random" and not (row.get("moved") or 0.0) <= DEFAULT_TOLERANCE:  # of the random search a share may
         yield f"moves by {row['moved']:.2g} of the range of saturation with a tenth of the tolerance"
     if case.monotone:
         yield from (f"{name} {row[name]:.2g}" for name in ("overshoot_saturation", "overshoot_pressure")

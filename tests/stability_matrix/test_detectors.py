@@ -17,6 +17,7 @@ from case import Case  # noqa: E402
 from check import Watch, balances  # noqa: E402
 from claims import DISPROVED, tested  # noqa: E402
 from faults import faults  # noqa: E402
+from settings import DEFAULT_TOLERANCE  # noqa: E402
 from strength import excess, relative_excess  # noqa: E402
 
 SOUND = {"outcome": "finished", "reason": None, "balance": 0.0, "balance_stored": 0.0, "not_finite": [], "out_of_range": 0.0,
@@ -90,6 +91,16 @@ class Values(unittest.TestCase):
         for name in ("rain", "stored", "residual", "drained"):
             wrong = {**report, f"water_{name}": report[f"water_{name}"] + 2e-8}
             self.assertRegex(self.found(**balances([report, wrong, report]))[0], "water balance", name)
+            unknown = {**report, f"water_{name}": numpy.nan}
+            self.assertRegex(self.found(**balances([report, unknown, report]))[0], "water balance", name)
+
+    def test_bounds(self):
+        for case, bound, name, text in ((None, 1e-6, "yield_exceeded", "yield exceeded"),
+                                        (None, DEFAULT_TOLERANCE, "moved", "moves by"),
+                                        (Case("test/1", {}, [], settles=True), 1.0, "growth", "increments grow")):
+            self.assertEqual(self.found(case, **{name: 0.99 * bound}), [])
+            self.assertRegex(self.found(case, **{name: 1.01 * bound})[0], text)
+            self.assertRegex(self.found(case, **{name: numpy.nan})[0], text)
 
     def test_loss_of_equilibrium(self):
         for expected in (True, False):
