@@ -4,9 +4,11 @@ import os
 import pathlib
 
 import talus
+from isolated import in_a_process
+from machine import circumstances, text
 from page import number, table
 from rows import Clock, read_scene
-from sweep import circumstances, in_a_process
+from sweep import WALL_BOUND
 from variants import VARIANTS
 
 SCENE = "slope_gentle"
@@ -49,9 +51,14 @@ def measure_or_say(scene):
         return {"reason": str(error)}
 
 
+def row(variant, scene):
+    outcome, result = in_a_process(WALL_BOUND, measure_or_say, scene)
+    return {"variant": variant, **(result if outcome == "finished" else {"reason": result})}
+
+
 def run():
     scene = read_scene(SCENE)
-    rows = [{"variant": name, **in_a_process(measure_or_say, change(scene))} for name, change in VARIANTS.items()]
+    rows = [row(name, change(scene)) for name, change in VARIANTS.items()]
     return {"scene": SCENE, "hours": HOURS, "rows": rows, **circumstances()}
 
 
@@ -76,7 +83,7 @@ def figure_line(row, full):
 
 def page(result):
     done = [row for row in result["rows"] if not row["reason"]]
-    lines = [INTRODUCTION, f"{result['processor']}, {result['cores']} cores, mean load {result['load']:g}.\n"]
+    lines = [INTRODUCTION, f"{text(result)}\n"]
     if done:
         lines += table(["variant", *FIGURES], [[row["variant"], *figure_line(row, result["rows"][0])] for row in done])
     lines += [f"- {row['variant']} leaves out: {'; '.join(row['left_out'])}." for row in done]

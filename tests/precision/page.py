@@ -1,5 +1,6 @@
 """docs/error_against_time.md from the rows of the sweep."""
 
+from machine import text_with_build
 from plot import file_of
 from quantities import SAME, cheapest, coarsest_as_good, done_rows, front, headlines_of, quantities_of
 
@@ -118,8 +119,7 @@ def failure_lines(result):
 def case_lines(case, result):
     rows = done_rows(result)
     yield f"## {case}"
-    yield (f"Talus {result['build']['version']}, {result['build']['build']} build; {result['processor']}, "
-           f"{result['cores']} cores, mean load {result['load']:g}.\n")
+    yield f"{text_with_build(result)}\n"
     if rows:
         yield f"![error against run time]({file_of(case)})\n"
     if rows or result["baseline"]:

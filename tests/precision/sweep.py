@@ -2,9 +2,6 @@
 
 import importlib.util
 import json
-import os
-import pathlib
-import platform
 import subprocess
 import sys
 
@@ -77,11 +74,3 @@ def run_baseline(case, folder):
     result = json.loads(((folder if ran else REFERENCES) / recorded.name).read_text())
     name = f"FEM, {result['cells']} linear quads, " + ("run beside" if ran else "recorded on another occasion")
     return {"name": name, "recorded": not ran, **{key: result[key] for key in ("nodes", "errors", "wall_s", "cpu_s")}}
-
-
-# --- where it was measured ---
-
-def circumstances():
-    lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-    processor = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
-    return {"processor": processor, "cores": os.cpu_count(), "load": round(os.getloadavg()[1], 1), "build": talus.build_info()}
