@@ -10,6 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from cases import SWEEPS
 from faults import kind
+from machine import circumstances, text_with_build
 from matplotlib.colors import LogNorm
 
 MOST_RANDOM = 20  # failures of the random search in the table
@@ -60,13 +61,19 @@ def summary(rows):
         yield f"Price over the sweeps of flow: median {statistics.median(prices):.2g} (bound 5), worst {max(prices):.2g} (bound 100).\n"
 
 
-def kinds(rows):
-    """How many of the random search failed for which reason, numbers apart."""
-    passed = sum(row["passed"] for row in rows)
-    yield f"{len(rows)} scenes, {passed} passed. The failures by kind, then the first {MOST_RANDOM} of them:\n"
-    found = Counter(kind(fault) for row in rows for fault in row["faults"])
-    yield from (f"- {count} times: {text}" for text, count in found.most_common())
+def by_kind(texts, scenes):
+    found = Counter(map(kind, texts))
+    yield from (f"- {count} times ({100 * count / scenes:.2g} %): {text}" for text, count in found.most_common())
     yield ""
+
+
+def kinds(rows):
+    """How many of the random search were refused and failed for which reason, numbers apart."""
+    refused = [row["reason"] for row in rows if row["outcome"] == "refused"]
+    yield f"{len(rows)} scenes. {len(refused)} were refused:\n"
+    yield from by_kind(refused, len(rows))
+    yield f"{sum(not row['passed'] for row in rows)} failed; by kind, then the first {MOST_RANDOM} of them:\n"
+    yield from by_kind([fault for row in rows for fault in row["faults"]], len(rows))
 
 
 def file_of(sweep):
@@ -112,5 +119,5 @@ def sections(rows, folder):
 
 def write(rows, folder):
     folder.mkdir(parents=True, exist_ok=True)
-    lines = [INTRODUCTION, *summary(rows), *sections(rows, folder)]
+    lines = [INTRODUCTION, text_with_build(circumstances()) + "\n", *summary(rows), *sections(rows, folder)]
     (folder / "stability.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
