@@ -13,7 +13,15 @@ SWEEPS = (
     Sweep("split", ("K, m/s", "step, s"), ((1e-9, 1e-13, 1e-18), (1e4, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e6, 1e8)),
           lambda conductivity, step: loaded_column(conductivity, bulk_modulus=1e13, ramp=step),
           lambda conductivity, step: [["step", step, 1]] * 30, monotone=False, settles=True),
+    Sweep("split_yielding", ("Poisson ratio", "step, s"), ((0.3, 0, 0.1, 0.2, 0.45), (1e4, 1e-6, 1e-2, 1e2, 1e6, 1e8)),
+          lambda poisson, step: yielding_column(poisson, step),
+          lambda poisson, step: [["step", step, 1]] * 30, monotone=False, settles=True),
 )
+
+
+def yielding_column(poisson, ramp):
+    """Clay without friction that its own weight has brought to yield: there it is softer than the elastic ground of a split."""
+    return loaded_column(1e-9, bulk_modulus=1e13, ramp=ramp, soils=[earth(cohesion=1e4, friction=0, poisson=poisson, young=1e8, alpha=1e-5)])
 
 
 def undrained_cases():
