@@ -134,8 +134,13 @@ void Simulation::expect_skeleton(double duration) {
         end_volume_[i] =
             stands ? state_.flow_pore_volume[i] : state_.pore_volume[i] + state_.pore_volume_rate[i] * duration;
         end_stress_[i] = start_stress_[i] + (stands ? 0.0 : state_.pore_stress_rate[i] * duration);
-        if (stands) flow_->skeleton.softness[i] = 0.0;
     }
+    if (state_.equilibrium_lost) {
+        std::fill(flow_->skeleton.softness.begin(), flow_->skeleton.softness.end(), 0.0);
+    } else {
+        flow_->skeleton.softness = elastic_softness_;
+    }
+    std::fill(mismatch_.begin(), mismatch_.end(), 0.0);
     expect_skeleton_at(duration, end_volume_, end_stress_);
 }
 
@@ -170,6 +175,7 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
                 strain * flow_->network.corner_volume[corner];
         }
     }
+    constexpr double halved = 0.5;
     disagreement_ = 0;
     flow_->evaluate(0.0, flow.pressure);  // for the capacity
     for (size_t i = 0; i < portions.size(); ++i) {
@@ -178,12 +184,26 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
         const double taken = end_volume_[i] + skeleton.softness[i] * (stress - end_stress_[i]);
         const HydraulicState& state = flow_->state()[i];
         const double storage =
-            found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + skeleton.softness[i];
-        disagreement_ = std::max(disagreement_, std::abs(found[i] - taken) / (storage * agreement_pressure_));
+            found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + elastic_softness_[i];
+        const double mismatch = found[i] - taken;
+        disagreement_ = std::max(disagreement_, std::abs(mismatch) / (storage * agreement_pressure_));
+        if (mismatch_[i] != 0 && std::abs(mismatch) > halved * std::abs(mismatch_[i])) soften(i, stress);
+        mismatch_[i] = mismatch;
         end_volume_[i] = found[i];
         end_stress_[i] = stress;
         taken_volume_[i] = taken;
     }
+}
+
+// Ground that yields is softer than the elastic one that the split takes it for, and with less than half the true softness its iterations
+// diverge: this portion's is then the secant of the last two.
+void Simulation::soften(size_t portion, double stress) {
+    constexpr double softest = 1e6;  // times the elastic: at an apex the ground has no stiffness left
+    const double change = stress - end_stress_[portion];
+    if (change == 0) return;
+    const double elastic = elastic_softness_[portion];
+    const double secant = (found_volume_[portion] - end_volume_[portion]) / change;
+    flow_->skeleton.softness[portion] = std::clamp(secant, elastic, softest * elastic);
 }
 
 void Simulation::accept(double duration, const FlowState& flow) {

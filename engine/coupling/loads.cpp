@@ -121,14 +121,15 @@ void Simulation::refresh_geometry() {
     }
     talus::refresh_geometry(flow_->network, mesh_, scene_, conductivity_factor_);
     flow_->boundaries = make_flow_boundaries(mesh_, reference_mesh_, scene_);
-    for (size_t i = 0; i < flow_->skeleton.softness.size(); ++i) flow_->skeleton.softness[i] = 0.0;
+    std::fill(elastic_softness_.begin(), elastic_softness_.end(), 0.0);
     for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
         for (auto corner = static_cast<size_t>(mesh_.cell_start[c]);
              corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner) {
-            flow_->skeleton.softness[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
+            elastic_softness_[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
                 flow_->network.corner_volume[corner] * softness_[static_cast<size_t>(mesh_.cell_soil[c])];
         }
     }
+    flow_->skeleton.softness = elastic_softness_;
 }
 
 // The pressure projection in the stored water: per cell, volume / corners^2 times the difference of each pair of corners, which is what the
