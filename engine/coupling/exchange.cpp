@@ -187,7 +187,7 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
             found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + elastic_softness_[i];
         const double mismatch = found[i] - taken;
         disagreement_ = std::max(disagreement_, std::abs(mismatch) / (storage * agreement_pressure_));
-        if (mismatch_[i] != 0 && std::abs(mismatch) > halved * std::abs(mismatch_[i])) soften(i, stress);
+        if (mismatch_[i] != 0 && std::abs(mismatch) > halved * std::abs(mismatch_[i])) soften(i, pressure, stress);
         mismatch_[i] = mismatch;
         end_volume_[i] = found[i];
         end_stress_[i] = stress;
@@ -196,14 +196,18 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
 }
 
 // Ground that yields is softer than the elastic one that the split takes it for, and with less than half the true softness its iterations
-// diverge: this portion's is then the secant of the last two.
-void Simulation::soften(size_t portion, double stress) {
+// diverge: this portion's is then the secant of the last two. Under suction Bishop's pore stress S_e p may fall as the pressure rises; the
+// softness stays so small that the water stored does not.
+void Simulation::soften(size_t portion, double pressure, double stress) {
     constexpr double softest = 1e6;  // times the elastic: at an apex the ground has no stiffness left
     const double change = stress - end_stress_[portion];
     if (change == 0) return;
     const double elastic = elastic_softness_[portion];
+    double most = softest * elastic;
+    if (scene_.physics.stress == StressMeasure::bishop && pressure < 0)
+        most = std::min(most, 0.5 * found_volume_[portion] / -pressure);
     const double secant = (found_volume_[portion] - end_volume_[portion]) / change;
-    flow_->skeleton.softness[portion] = std::clamp(secant, elastic, softest * elastic);
+    flow_->skeleton.softness[portion] = std::max(elastic, std::min(secant, most));
 }
 
 void Simulation::accept(double duration, const FlowState& flow) {

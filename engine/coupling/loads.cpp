@@ -75,6 +75,9 @@ void Simulation::set_loads(const FlowState& flow, double until) {
     }
     std::fill(node_force_.begin(), node_force_.end(), 0.0);
     for (const GivenTraction& given : given_tractions_) add_traction(given, until);
+    if (flow_)
+        for (const int32_t f : flow_->boundaries.surface_facets)
+            add_pond(mesh_.facets[static_cast<size_t>(f)], flow.pressure);
     for (const GivenDisplacement& given : given_displacements_) {
         prescribed_displacement_[given.freedom] =
             forcing.motion_value(given.boundary, given.component, until) - state_.displacement[given.freedom];
@@ -95,6 +98,29 @@ void Simulation::add_traction(const GivenTraction& given, double time) {
         const double force = 0.5 * length * forcing.motion_value(given.boundary, component, time);
         node_force_[a + component] += force;
         node_force_[b + component] += force;
+    }
+}
+
+// The weight of water that stands on the surface. What a boundary holds there is the host's, with the traction that it gives.
+void Simulation::add_pond(const Facet& facet, std::span<const double> pressure) {
+    const auto standing = [&](int32_t node) {
+        const auto index = static_cast<size_t>(node);
+        return flow_->is_held(index) ? 0.0 : std::max(0.0, pressure[index]);
+    };
+    const double at_a = standing(facet.node_a);
+    if (mesh_.dimension == 1) {
+        node_force_[static_cast<size_t>(facet.node_a)] -= at_a;
+        return;
+    }
+    const double at_b = standing(facet.node_b);
+    const auto a = 2 * static_cast<size_t>(facet.node_a);
+    const auto b = 2 * static_cast<size_t>(facet.node_b);
+    // times the facet's length
+    const std::array<double, 2> normal{mesh_.position[b + 1] - mesh_.position[a + 1],
+                                       mesh_.position[a] - mesh_.position[b]};
+    for (size_t component = 0; component < 2; ++component) {
+        node_force_[a + component] -= (2.0 * at_a + at_b) / 6.0 * normal[component];
+        node_force_[b + component] -= (at_a + 2.0 * at_b) / 6.0 * normal[component];
     }
 }
 

@@ -102,7 +102,7 @@ private:
     void expect_skeleton(double duration);
     void expect_skeleton_at(double duration, std::span<const double> volume, std::span<const double> stress);
     void compare_pore_volumes(const FlowState& flow);
-    void soften(size_t portion, double stress);
+    void soften(size_t portion, double pressure, double stress);
     void accept(double duration, const FlowState& flow);
     EquilibriumOutcome find_equilibrium(const FlowState& flow, double until);
     // what passes between them (loads.cpp)
@@ -133,6 +133,7 @@ private:
         size_t facet, boundary;
     };
     void add_traction(const GivenTraction& given, double time);
+    void add_pond(const Facet& facet, std::span<const double> pressure);
 
     std::vector<double> softness_;             // per soil, 1/Pa: the fixed-stress split's, where nothing yields
     std::vector<double> projection_softness_;  // per soil, 1/Pa: the pressure projection's

@@ -69,9 +69,13 @@ public:
         : mesh_(mesh), reference_(reference), scene_(scene) {}
 
     FlowBoundaries build() {
-        for (const Facet& facet : mesh_.facets) {
+        for (size_t f = 0; f < mesh_.facets.size(); ++f) {
+            const Facet& facet = mesh_.facets[f];
             const int32_t boundary = flow_boundary(scene_, reference_, facet);
-            if (takes_rain(scene_, reference_, facet, boundary)) add_surface(facet);
+            if (takes_rain(scene_, reference_, facet, boundary)) {
+                add_surface(facet);
+                result_.surface_facets.push_back(static_cast<int32_t>(f));
+            }
             if (boundary < 0) continue;
             const FlowCondition condition = scene_.boundaries[static_cast<size_t>(boundary)].flow;
             if (condition == FlowCondition::flux) add_flux(facet, boundary);

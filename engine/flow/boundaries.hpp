@@ -43,6 +43,7 @@ struct FluxShare {
 
 struct FlowBoundaries {
     std::vector<SurfaceNode> surface;
+    std::vector<int32_t> surface_facets;  ///< indices into Mesh::facets: where those nodes are
     std::vector<ZoneShare> zone_shares;
     std::vector<HeldNode> held;
     std::vector<FluxShare> flux_shares;
