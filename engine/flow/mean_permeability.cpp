@@ -23,9 +23,13 @@ MeanPermeability integral_mean(const HydraulicTable& table, const LinkEnd& a, co
         std::abs(b.state.permeability - a.state.permeability) <= hardly &&
         std::abs(step * a.state.permeability_slope) <= hardly &&
         std::abs(step * b.state.permeability_slope) <= hardly) {
-        const double mean = 0.5 * (a.state.permeability + b.state.permeability) -
-                            (b.state.permeability_slope - a.state.permeability_slope) * step / 12.0;
-        return {mean, 0.5 * a.state.permeability_slope, 0.5 * b.state.permeability_slope};
+        constexpr double apart = 1e-6;  // of the pressures: closer ones have lost the digits of their secant
+        const double slope = std::abs(step) > apart * std::abs(a.pressure)
+                                 ? (b.state.permeability - a.state.permeability) / step
+                                 : 0.5 * (a.state.permeability_slope + b.state.permeability_slope);
+        const double bend = (b.state.permeability_slope - a.state.permeability_slope) / 12.0;
+        const double mean = 0.5 * (a.state.permeability + b.state.permeability) - bend * step;
+        return {mean, 0.5 * slope - bend, 0.5 * slope + bend};
     }
     const auto [less, more] = std::minmax(a.state.permeability, b.state.permeability);
     const double mean = std::clamp((b.state.potential - a.state.potential) / step, less, more);
