@@ -97,7 +97,7 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
         error = trial_error;
         if (is_round_off && merit_ > gaining * merit) return std::isfinite(error);
     }
-    return error <= accuracy.node;
+    return is_met();
 }
 
 bool StageSolver::factorise(double step) {
