@@ -1,8 +1,10 @@
 """What the random search found, reduced where the failure let itself be."""
 
+from dataclasses import replace
+
 from case import Case
-from random_cases import rigid_column
-from scenes import column, soil
+from random_cases import random_case, rigid_column
+from scenes import column, earth, rain_zone, section, sloping, soil
 
 
 def coarse_over_fine(upper, lower, **others):
@@ -11,19 +13,51 @@ def coarse_over_fine(upper, lower, **others):
                   [{"soil": "upper"}, {"soil": "lower", "top": others["height"] / 2}], cells=2, **others)
 
 
-def cases():
+def flow_cases():
     scene = coarse_over_fine({"alpha": 5e-3, "n": 10.0, "conductivity": 1e-2, "residual": 0.04},
                              {"alpha": 4e-7, "conductivity": 3e-4}, height=8.638, suction=1.402, rain=1.298e-4, base=-1120.0)
-    yield Case("found/698_reduced", scene, [["step", 909e3, 1]])
+    yield Case("found/rigid_698_reduced", scene, [["step", 909e3, 1]])
     scene = coarse_over_fine({"alpha": 6e-3, "n": 10.0, "residual": 0.04448},
                              {"alpha": 4.5e-7, "n": 1.239, "conductivity": 1.295e-9, "porosity": 0.7234, "residual": 0.027},
                              height=3.022, suction=147e3, rain=1.2675e-5)
-    yield Case("found/916_reduced", scene, [["step", 2144, 1]], tightened=True)
+    yield Case("found/rigid_916_reduced", scene, [["step", 2144, 1]], tightened=True)
     scene = coarse_over_fine(
         {"alpha": 2.922e-3, "n": 1.0784, "conductivity": 2.528e-4, "porosity": 0.09884, "residual": 0.006611},
         {"alpha": 6.503e-3, "n": 7.88, "conductivity": 1.628e-9, "porosity": 0.46, "residual": 0.2741},
         height=0.5136, suction=218.1e3, rain=6.631e-5, ponding=0.2945)
-    yield Case("found/1863_reduced", scene, [["step", 101.2e3, 1]], tightened=True)
+    yield Case("found/rigid_1863_reduced", scene, [["step", 101.2e3, 1]], tightened=True)
     for seed in (5, 228, 655, 698, 916, 1863):
         scene, steps = rigid_column(seed)
-        yield Case(f"found/{seed}", scene, steps, tightened=True)
+        yield Case(f"found/rigid_{seed}", scene, steps, tightened=True)
+
+
+def few_cells(ground, cells, initial, **others):
+    """A metre of ground that deforms, in a few cells."""
+    return {"name": "stability", "soils": [ground], "ground": {"column": {"height": 1, "cells": cells, "layers": [{"soil": "earth"}]}},
+            "boundaries": [{"name": "base", "side": "base", "motion": "fixed"}], "initial": initial, **others}
+
+
+def stiff_over_soft():
+    """Level ground, of which a wedge below is a thousand times softer."""
+    soils = [earth("upper", cohesion=0, friction=10, young=1e10), earth("lower", cohesion=0, friction=10, young=1e7)]
+    ground = section([[0, 5], [16, 5]], [[0, 0], [16, 0]], 1, 1, 1, [{"soil": "upper"}, {"soil": "lower", "top": [[0, 1], [16, 0]]}])
+    return sloping(ground, soils, table=0)
+
+
+def coupled_cases():
+    yield Case("found/254_reduced", stiff_over_soft(), [["step", 1, 1]])
+    fredlund = {"model": "fredlund", "suctionFrictionAngle": 1}
+    clay = earth(cohesion=100, friction=0, young=1e6, poisson=0, alpha=1e-6, conductivity=1e-7, strength=fredlund)
+    scene = few_cells(clay, 2, {"flow": "suction", "suction": 2e3})
+    scene["boundaries"][0].update(flow="pressure", flowValue={"value": [0]})
+    yield Case("found/31_reduced", scene, [["step", 1, 1]])
+    sand = earth(cohesion=0, friction=20, dilation=10, poisson=0.49, n=4, alpha=1e-5, conductivity=1e-8, strength=fredlund)
+    scene = few_cells(sand, 1, {"flow": "hydrostatic", "waterTable": 0, "stress": "k0", "k0": 0.4}, surface=rain_zone(1e-6))
+    yield Case("found/91_reduced", scene, [["step", 1, 5]])
+    for number in (31, 77, 83, 89, 91, 107, 146, 191, 203, 254, 257, 272, 371, 467):
+        yield replace(random_case(number), name=f"found/{number}")
+
+
+def cases():
+    yield from flow_cases()
+    yield from coupled_cases()

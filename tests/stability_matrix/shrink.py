@@ -12,7 +12,7 @@ import time
 from dataclasses import replace
 
 from faults import kind
-from settings import set_resolution
+from settings import SECTION_LENGTHS, set_resolution
 
 MOST_SECONDS = 600
 HUNG_AFTER = 5.0  # s: what takes longer counts as hung while it is shrunk
@@ -65,7 +65,7 @@ def coarser(tree, path):
         changed = copy.deepcopy(tree)
         try:
             set_resolution(changed["scene"], 2)
-        except KeyError:  # a mesh
+        except (KeyError, ZeroDivisionError):  # a mesh, or a single cell
             return
         yield changed
 
@@ -83,7 +83,10 @@ def simpler_numbers(value):
 
 
 def simpler(tree, path):
-    for number in simpler_numbers(holder(tree, path)[path[-1]]):
+    value = holder(tree, path)[path[-1]]
+    for number in simpler_numbers(value):
+        if path[-1] in SECTION_LENGTHS and number < value:
+            continue  # more cells are not simpler
         changed = copy.deepcopy(tree)
         holder(changed, path)[path[-1]] = number
         yield changed
