@@ -26,9 +26,20 @@ def flow_cases():
         {"alpha": 6.503e-3, "n": 7.88, "conductivity": 1.628e-9, "porosity": 0.46, "residual": 0.2741},
         height=0.5136, suction=218.1e3, rain=6.631e-5, ponding=0.2945)
     yield Case("found/rigid_1863_reduced", scene, [["step", 101.2e3, 1]], tightened=True)
+    yield Case("found/77_reduced", wetted_from_below(), [["step", 0.02, 1], ["step", 589e3, 1]])
     for seed in (5, 228, 655, 698, 916, 1863):
         scene, steps = rigid_column(seed)
         yield Case(f"found/rigid_{seed}", scene, steps, tightened=True)
+
+
+def wetted_from_below():
+    """A coarse and very dry wedge whose base is suddenly wet, below clay; rigid."""
+    soils = [soil("upper", alpha=1e-5, conductivity=1e-13, porosity=0.1), soil("lower", alpha=1e-3, n=10.0, porosity=0.1)]
+    ground = section([[0, 10], [1, 10], [165, 30]], [[0, 0], [165, 0]], 33, 4, 15,
+                     [{"soil": "upper"}, {"soil": "lower", "top": [[0, 0], [165, 10]]}])
+    return {"name": "stability", "physics": {"deforming": False}, "soils": soils, "ground": ground,
+            "boundaries": [{"name": "base", "side": "base", "flow": "hydrostatic", "flowValue": {"value": [0]}}],
+            "surface": rain_zone(4.65e-8), "initial": {"flow": "hydrostatic", "waterTable": -24.5}}
 
 
 def few_cells(ground, cells, initial, **others):
