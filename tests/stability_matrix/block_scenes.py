@@ -16,7 +16,8 @@ def compressive_strength(cohesion, friction):
 
 def smooth_block(soil, traction, width=0.5, height=1.0):
     """Half of a block between smooth plates, free at its right side, under a traction (Pa, up) that grows over a second."""
-    ground = section([[0, height], [width, height]], [[0, 0], [width, 0]], width / 4, height / 8, height / 8, [{"soil": soil["name"]}])
+    ground = section([[0, height], [width, height]], [[0, 0], [width, 0]], width / 4, height / 8, height / 8,
+                     [{"soil": soil["name"]}])
     return {"name": "stability", "soils": [soil], "ground": ground,
             "boundaries": [{"name": "base", "side": "base", "motion": "roller"},
                            {"name": "middle", "side": "left", "motion": "roller"},
@@ -31,10 +32,11 @@ def dry_block(soil, traction):
 
 
 def wetted_block(factor, seconds, cohesion=2e4, friction=30):
-    """Loaded to `factor` of what it bears without suction, under 50 kPa of it, all of which is lost within `seconds` after 2 s."""
+    """Under `factor` of the load that it bears without suction, and 50 kPa of suction, lost within `seconds` after 2 s."""
     height = 0.1
     load = factor * compressive_strength(cohesion, friction) - SATURATED_DENSITY * GRAVITY * height
-    scene = smooth_block(earth(cohesion=cohesion, friction=friction, young=1e9, alpha=1e-5, conductivity=1e-4), -load, 0.05, height)
+    ground = earth(cohesion=cohesion, friction=friction, young=1e9, alpha=1e-5, conductivity=1e-4)
+    scene = smooth_block(ground, -load, 0.05, height)
     lost = {"time": [2, 2 + seconds], "value": [-5e4, 0]}
     for side in ("base", "surface"):  # both at once: no pressure above 0 below, which net stress would carry
         scene["boundaries"].append({"name": f"{side} water", "side": side, "flow": "pressure", "flowValue": lost})

@@ -1,4 +1,4 @@
-"""A claim of collapse put to the test: stresses that bear the weight disprove it, and a run with other stiffness may find some."""
+"""A claim of collapse put to the test: stresses that bear the weight disprove it, and ground of another stiffness may have some."""
 
 import copy
 
@@ -9,7 +9,10 @@ DISPROVED = "; with one Young's modulus it stands"
 
 
 def stands_with_one_modulus(scene):
-    """Whether the scene begins once all its soils are as stiff as the first: what stress its strength bears is not for stiffness to say."""
+    """Whether the scene begins once all its soils are as stiff as the first.
+
+    Its stresses are then in equilibrium with the weight and within the strength, neither of which asks for the stiffness.
+    """
     other = copy.deepcopy(scene)
     for soil in other["soils"]:
         soil["solid"]["youngModulus"] = other["soils"][0]["solid"]["youngModulus"]

@@ -44,14 +44,16 @@ def wetted_from_below():
 
 def few_cells(ground, cells, initial, **others):
     """A metre of ground that deforms, in a few cells."""
-    return {"name": "stability", "soils": [ground], "ground": {"column": {"height": 1, "cells": cells, "layers": [{"soil": "earth"}]}},
+    return {"name": "stability", "soils": [ground],
+            "ground": {"column": {"height": 1, "cells": cells, "layers": [{"soil": "earth"}]}},
             "boundaries": [{"name": "base", "side": "base", "motion": "fixed"}], "initial": initial, **others}
 
 
 def stiff_over_soft():
     """Level ground, of which a wedge below is a thousand times softer."""
     soils = [earth("upper", cohesion=0, friction=10, young=1e10), earth("lower", cohesion=0, friction=10, young=1e7)]
-    ground = section([[0, 5], [16, 5]], [[0, 0], [16, 0]], 1, 1, 1, [{"soil": "upper"}, {"soil": "lower", "top": [[0, 1], [16, 0]]}])
+    ground = section([[0, 5], [16, 5]], [[0, 0], [16, 0]], 1, 1, 1,
+                     [{"soil": "upper"}, {"soil": "lower", "top": [[0, 1], [16, 0]]}])
     return sloping(ground, soils, table=0)
 
 

@@ -21,9 +21,10 @@ INTRODUCTION = """\
 
 `tests/stability` writes this page, its maps, and every row as JSON. Each case is a scene with a host's steps, run in a process
 of its own under a wall bound. It passes when it finishes with a water balance within 1e-8 of the water moved until then (which
-counts at least a millionth of the water stored), no NaN or infinity in any view, saturation within its soil's range, and no peak
-above 1e-6 inside the profile where physics has none, and no stress beyond the strength by more than 1e-6 of it (until equilibrium is
-lost, after which the skeleton stands as it was); or when it is refused and a refusal is right. *Overshoot* is that of
+counts at least a millionth of the water stored), no NaN or infinity in any view, saturation within its soil's range, no peak
+above 1e-6 inside the profile where physics has none, and no stress beyond the strength by more than 1e-6 of it (until equilibrium
+is lost, after which the skeleton stands as it was); or when it is refused and a refusal is right. A refusal because the ground does
+not stand is wrong where it stands with one Young's modulus. *Overshoot* is that of
 saturation and of pressure, each per unit of its range; a dash where physics allows peaks. *Price* is the wall time over that of
 the sweep's first case, the benign one; a run of a millisecond has it to some 2 times only. Cases `found` and `random` run again
 with a tenth of the tolerance. On the maps a cross is a case that failed.
@@ -32,9 +33,9 @@ Cases `split` load a column at once and then wait: increments of displacement an
 column, must not grow. An increment counts at least what the tolerance lets stand: 1e-3 of the largest displacement, and of the
 weight of the column's height of water.
 
-Cases `limit_*` and `suction_lost` are loaded to 0.98 and 1.02 of what they bear, in closed form but for `limit_slope`: equilibrium
-must be lost beyond it and only there. Not here are points on the edges of cells, cells with one point and nodes of vanishing mass:
-points do not leave their cells yet (docs/api.md, post-failure motion).
+Cases `limit_*` and `suction_lost` are loaded to 0.98 and 1.02 of what they bear, in closed form but for `limit_slope`:
+equilibrium must be lost beyond it and only there. Not here are points on the edges of cells, cells with one point and nodes of
+vanishing mass: points do not leave their cells yet (docs/api.md, post-failure motion).
 """
 
 
@@ -58,7 +59,8 @@ def summary(rows):
     names = {sweep.name for sweep in flow_cases.SWEEPS}
     prices = [row["price"] for row in rows if row["price"] and row["sweep"] in names]
     if prices:
-        yield f"Price over the sweeps of flow: median {statistics.median(prices):.2g} (bound 5), worst {max(prices):.2g} (bound 100).\n"
+        median, worst = statistics.median(prices), max(prices)
+        yield f"Price over the sweeps of flow: median {median:.2g} (bound 5), worst {worst:.2g} (bound 100).\n"
 
 
 def by_kind(texts, scenes):

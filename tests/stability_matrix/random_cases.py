@@ -44,14 +44,16 @@ def rigid_column(seed):
     layers = [{"soil": "upper"}, {"soil": "lower", "top": height / 2}]
     scene = column([random_soil(draw, "upper"), random_soil(draw, "lower")], layers, height=height, cells=2 * draw.whole(2, 20),
                    suction=draw.choice((0.0, draw.log_uniform(1, 1e6))), rain=draw.log_uniform(0.1, 1000) * MM_PER_HOUR,
-                   base=draw.choice((None, 0.0, -draw.log_uniform(1, 1e5))), ponding=draw.choice((0.0, draw.log_uniform(1e-3, 1))))
+                   base=draw.choice((None, 0.0, -draw.log_uniform(1, 1e5))),
+                   ponding=draw.choice((0.0, draw.log_uniform(1e-3, 1))))
     return scene, random_steps(draw)
 
 
 # --- ground that deforms ---
 
 def random_strength(draw, cohesion, friction):
-    gain = {"cohesionGain": draw.log_uniform(50, 1e5), "cohesionRate": draw.log_uniform(0.1, 1000), "frictionGain": draw.uniform(0, 60)}
+    gain = {"cohesionGain": draw.log_uniform(50, 1e5), "cohesionRate": draw.log_uniform(0.1, 1000),
+            "frictionGain": draw.uniform(0, 60)}
     model = draw.choice(({"model": "vanapalli"}, {"model": "constant"}, {"model": "exponential", **gain},
                          {"model": "fredlund", "suctionFrictionAngle": draw.uniform(1, 40)}))
     return {"cohesion": cohesion, "frictionAngle": friction, **model}
@@ -62,7 +64,8 @@ def random_solid(draw, height, cohesion, friction):
     solid = {"youngModulus": max(2e4, draw.log_uniform(100, 1e8) * WEIGHT * height),
              "poissonRatio": float(f"{0.5 - draw.log_uniform(1e-4, 0.5):.4f}")}
     tensile = draw.choice((None, 0.0, draw.log_uniform(1, 1e5)))
-    plastic = {"strength": random_strength(draw, cohesion, friction), "dilationAngle": draw.choice((0, draw.uniform(0, friction)))}
+    plastic = {"strength": random_strength(draw, cohesion, friction),
+               "dilationAngle": draw.choice((0, draw.uniform(0, friction)))}
     if tensile is not None:
         plastic["tensileStrength"] = tensile
     return {**solid, **draw.choice((plastic, plastic, {"model": "elastic"}))}
@@ -127,8 +130,9 @@ def small_section(seed):
                      width / draw.whole(4, 8), height / draw.whole(5, 10), height / draw.whole(2, 4),
                      [{"soil": "upper"}, {"soil": "lower", "top": top}])
     boundaries = held_ground()
-    boundaries[draw.whole(0, 2)].update(draw.choice((
-        {}, {"flow": "hydrostatic", "flowValue": {"time": [0, draw.log_uniform(1, 1e6)], "value": [0.0, draw.uniform(-1, 1) * height]}})))
+    watered = boundaries[draw.whole(0, 2)]
+    level = {"time": [0, draw.log_uniform(1, 1e6)], "value": [0.0, draw.uniform(-1, 1) * height]}
+    watered.update(draw.choice(({}, {"flow": "hydrostatic", "flowValue": level})))
     return deforming(draw, ground, soils, boundaries, low), random_steps(draw, most_times=2)
 
 

@@ -1,7 +1,7 @@
 """Delta debugging: the least scene and steps that still fail in the same way.
 
-The scene and its steps are one tree of lists, dicts, numbers and texts. A change is kept where the same kind of fault stays: one that
-makes the scene invalid is another kind, so that the changes need to know little of what a scene may say.
+The scene and its steps are one tree of lists, dicts, numbers and texts. A change is kept where the same kind of fault stays: one
+that makes the scene invalid is another kind, so that the changes need to know little of what a scene may say.
 """
 
 import copy

@@ -7,21 +7,24 @@ from case import DAY, HOUR, Case, Sweep
 from scenes import earth, elastic_soil, loaded_column, small_slope
 
 STORM = [["step", HOUR, 12]]
-LIMIT_SHARE = 0.6434  # of 3 kPa and tan 30 degrees, with which the small slope just stands a storm: by bisection with the engine
+LIMIT_SHARE = 0.6434  # of 3 kPa and tan 30 degrees, which the small slope just needs in a storm: by bisection with the engine
 RATIOS = (0.98, 1.02)  # of the load to the limit load, or of the strength to that needed
+
+
+def yielding_column(poisson, ramp):
+    """Clay without friction that its own weight has brought to yield: there it is softer than the elastic ground of a split."""
+    clay = earth(cohesion=1e4, friction=0, poisson=poisson, young=1e8, alpha=1e-5, conductivity=1e-9)
+    return loaded_column(bulk_modulus=1e13, ramp=ramp, soils=[clay])
+
+
 SWEEPS = (
     Sweep("split", ("K, m/s", "step, s"), ((1e-9, 1e-13, 1e-18), (1e4, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e6, 1e8)),
           lambda conductivity, step: loaded_column(conductivity, bulk_modulus=1e13, ramp=step),
           lambda conductivity, step: [["step", step, 1]] * 30, monotone=False, settles=True),
     Sweep("split_yielding", ("Poisson ratio", "step, s"), ((0.3, 0, 0.1, 0.2, 0.45), (1e4, 1e-6, 1e-2, 1e2, 1e6, 1e8)),
-          lambda poisson, step: yielding_column(poisson, step),
+          yielding_column,
           lambda poisson, step: [["step", step, 1]] * 30, monotone=False, settles=True),
 )
-
-
-def yielding_column(poisson, ramp):
-    """Clay without friction that its own weight has brought to yield: there it is softer than the elastic ground of a split."""
-    return loaded_column(1e-9, bulk_modulus=1e13, ramp=ramp, soils=[earth(cohesion=1e4, friction=0, poisson=poisson, young=1e8, alpha=1e-5)])
 
 
 def undrained_cases():
@@ -99,8 +102,8 @@ def limit_cases():
         for stress in ("net", "bishop"):
             yield Case(f"limit_heave/{stress}_{ratio:g}", heaving_column(ratio, stress), [["step", HOUR, 48]], loses=loses)
         for seconds in (1e-3, 60.0):
-            yield Case(f"suction_lost/{seconds:g}_{ratio:g}", wetted_block(ratio, seconds), [["step", 0.5, 4], ["step", 10.0, 60]],
-                       loses=loses)
+            yield Case(f"suction_lost/{seconds:g}_{ratio:g}", wetted_block(ratio, seconds),
+                       [["step", 0.5, 4], ["step", 10.0, 60]], loses=loses)
 
 
 def weak_cases():

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""That the detectors fire: each is shown values that are doctored, and the same ones sound. Usage: test_detectors.py [-v] [TEST ...]"""
+"""That the detectors fire: each is shown values that are doctored, and sound ones. Usage: test_detectors.py [-v] [TEST ...]"""
 
 import pathlib
 import sys
