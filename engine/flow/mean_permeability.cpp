@@ -31,8 +31,14 @@ MeanPermeability integral_mean(const HydraulicTable& table, const LinkEnd& a, co
         const double mean = 0.5 * (a.state.permeability + b.state.permeability) - bend * step;
         return {mean, 0.5 * slope - bend, 0.5 * slope + bend};
     }
-    const auto [less, more] = std::minmax(a.state.permeability, b.state.permeability);
-    const double mean = std::clamp((b.state.potential - a.state.potential) / step, less, more);
+    const auto [drier, wetter] = std::minmax(a.state.permeability, b.state.permeability);
+    const double mean = (b.state.potential - a.state.potential) / step;
+    // So dry that the difference has no digits left.
+    if (mean <= drier || mean >= wetter) {
+        const bool is_a = (mean <= drier) == (a.state.permeability <= b.state.permeability);
+        return is_a ? MeanPermeability{a.state.permeability, a.state.permeability_slope, 0.0}
+                    : MeanPermeability{b.state.permeability, 0.0, b.state.permeability_slope};
+    }
     return {mean, (mean - a.state.permeability) / step, (b.state.permeability - mean) / step};
 }
 
