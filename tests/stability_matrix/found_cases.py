@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from case import Case
 from random_cases import random_case, rigid_column
-from scenes import column, earth, rain_zone, section, sloping, soil
+from scenes import column, earth, elastic_soil, rain_zone, section, sloping, soil
 
 
 def coarse_over_fine(upper, lower, **others):
@@ -57,7 +57,22 @@ def stiff_over_soft():
     return sloping(ground, soils, table=0)
 
 
+def dry_sand():
+    """Two cells of dry, evenly grained ground under rain, in Bishop's stress."""
+    ground = section([[0, 1], [2, 1]], [[0, 0], [2, 0]], 1, 1, 1, [{"soil": "earth"}])
+    hydraulics = {"alpha": 1e-3, "n": 9.0, "conductivity": 1e-10, "porosity": 0.1}
+    scene = sloping(ground, [elastic_soil("earth", 1e11, 0, **hydraulics)], rain=1e-5, stress="bishop")
+    return {**scene, "initial": {"flow": "suction", "suction": 4.6e5}}
+
+
 def coupled_cases():
+    yield Case("found/287_reduced", dry_sand(), [["step", 1, 1]])
+    clay = earth(cohesion=0, friction=1, poisson=0, young=1e8, alpha=1e-7, conductivity=1e-11)
+    scene = few_cells(clay, 1, {"flow": "suction", "suction": 0, "stress": "k0", "k0": 0.0})
+    scene["boundaries"][0].update(flow="pressure", flowValue={"value": [0]})
+    scene["boundaries"].append({"name": "load", "side": "surface", "motion": "traction",
+                                "motionY": {"time": [0, 1], "value": [0, -1e3]}})
+    yield Case("found/187_reduced", scene, [["step", 1, 1]])
     yield Case("found/254_reduced", stiff_over_soft(), [["step", 1, 1]])
     fredlund = {"model": "fredlund", "suctionFrictionAngle": 1}
     clay = earth(cohesion=100, friction=0, young=1e6, poisson=0, alpha=1e-6, conductivity=1e-7, strength=fredlund)
@@ -67,7 +82,7 @@ def coupled_cases():
     sand = earth(cohesion=0, friction=20, dilation=10, poisson=0.49, n=4, alpha=1e-5, conductivity=1e-8, strength=fredlund)
     scene = few_cells(sand, 1, {"flow": "hydrostatic", "waterTable": 0, "stress": "k0", "k0": 0.4}, surface=rain_zone(1e-6))
     yield Case("found/91_reduced", scene, [["step", 1, 5]])
-    for number in (31, 77, 83, 89, 91, 107, 146, 191, 203, 254, 257, 272, 371, 467):
+    for number in (31, 77, 83, 89, 91, 107, 146, 191, 187, 203, 254, 257, 272, 287, 371, 440, 467):
         yield replace(random_case(number), name=f"found/{number}")
 
 
