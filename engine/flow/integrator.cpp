@@ -16,8 +16,10 @@ namespace {
 
 constexpr double stage_tolerance =
     1e-9;  // of a node's pore volume: Newton converges quadratically, so this costs one iteration
-constexpr double balance = 1e-9;  // of the water that crossed the edge of the ground until then,
-constexpr double little = 1e-6;   // or, where less than this of the water stored did, of that: beyond it is rounding
+constexpr double balance = 1e-9;      // of the water that crossed the edge of the ground until then,
+constexpr double end_share = 1e-9;    // of an advance: round-off in its times
+constexpr double worth_share = 1e-3;  // of an advance: a shorter last substep is not tried for the balance's sake
+constexpr double little = 1e-6;  // or, where less than this of the water stored did, of that: beyond it is rounding
 
 void check(int flag, const char* call) {
     if (flag != 0) throw Error(Status::internal, std::string("SUNDIALS ") + call + " returned " + std::to_string(flag));
@@ -57,6 +59,7 @@ struct FlowIntegrator::Arkode {
     std::vector<double> stage;     // pressures at the last stage solved
     double stage_time = 0;
     double accepted_time = 0;
+    double duration = 0;  // s, of the advance
     std::vector<double> target;
 
     Arkode(FlowSystem& system_in, double tolerance_in);
@@ -66,7 +69,7 @@ struct FlowIntegrator::Arkode {
 
     void start(const FlowState& state);
     void make_memory();
-    [[nodiscard]] StageAccuracy accuracy() const;
+    [[nodiscard]] StageAccuracy accuracy(double t, double gamma) const;
     int solve_stage(N_Vector correction);
 
     static Arkode& of(SUNNonlinearSolver solver) { return *static_cast<Arkode*>(solver->content); }
@@ -151,11 +154,15 @@ int FlowIntegrator::Arkode::weights(N_Vector, N_Vector weight, void* user) {
     return 0;
 }
 
-// A host reads the water in the ground from the pressures, so Newton's remainder is what its balance misses.
-StageAccuracy FlowIntegrator::Arkode::accuracy() const {
+// A host reads the water in the ground from the pressures, so Newton's remainder is what its balance misses, at the end of an advance.
+StageAccuracy FlowIntegrator::Arkode::accuracy(double t, double gamma) const {
+    const bool is_end = t >= (1.0 - end_share) * duration;
+    if (!is_end || gamma < worth_share * duration) return {stage_tolerance, std::numeric_limits<double>::infinity()};
     const double* totals = N_VGetArrayPointer(variables) + target.size();
+    double moved = 0;
+    for (const size_t k : {rain_total, seepage_total, inflow_total, drained_total})
+        moved += totals[k] + gamma * system.total_rates()[k];
     const double stored = std::accumulate(target.begin(), target.end(), 0.0);
-    const double moved = totals[rain_total] + totals[seepage_total] + totals[inflow_total] + totals[drained_total];
     return {stage_tolerance, balance * std::max(moved, little * stored)};
 }
 
@@ -174,7 +181,7 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
     const double* change = N_VGetArrayPointer(known);
     for (size_t i = 0; i < target.size(); ++i) target[i] = before[i] + change[i];
     if (stage_time <= accepted_time || stage_time >= t) stage = accepted;
-    if (!solver.solve(t, gamma, target, accuracy(), stage)) {
+    if (!solver.solve(t, gamma, target, accuracy(t, gamma), stage)) {
         stage_time = accepted_time;
         return SUN_NLS_CONV_RECVR;
     }
@@ -203,6 +210,7 @@ FlowIntegrator::~FlowIntegrator() = default;
 AdvanceResult FlowIntegrator::advance(FlowState& state, double duration, const AfterSubstep& after_substep) {
     Arkode& ark = *arkode_;
     ark.start(state);
+    ark.duration = duration;
     ARKStepSetStopTime(ark.memory, duration);
     if (state.substep > 0) ARKStepSetInitStep(ark.memory, std::min(state.substep, duration));
     const int64_t iterations_before = ark.solver.iterations();
