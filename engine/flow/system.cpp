@@ -37,6 +37,8 @@ FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, Fl
     if (scene.physics.deforming) {
         pore_stress_.resize(network.portions.size());
         pore_stress_slope_.resize(network.portions.size());
+        effective_saturation_.resize(network.portions.size());
+        effective_saturation_slope_.resize(network.portions.size());
     }
     list_portions(count);
 }
@@ -132,17 +134,13 @@ void FlowSystem::evaluate_deforming(double t, std::span<const double> pressure) 
         const auto node = static_cast<size_t>(network.portions[i].node);
         const double p = pressure[node];
         const HydraulicState& here = state_[i];
-        if (bishop) {
-            const Retention& retention =
-                scene_.soils[static_cast<size_t>(network.portions[i].soil)].hydraulics.retention;
-            const double range = retention.maximum_saturation - retention.residual_saturation;
-            const double effective = (here.saturation - retention.residual_saturation) / range;
-            pore_stress_[i] = effective * p;
-            pore_stress_slope_[i] = effective + p * here.capacity / range;
-        } else {
-            pore_stress_[i] = std::max(p, 0.0);
-            pore_stress_slope_[i] = p > 0 ? 1.0 : 0.0;
-        }
+        const Retention& retention = scene_.soils[static_cast<size_t>(network.portions[i].soil)].hydraulics.retention;
+        const double range = retention.maximum_saturation - retention.residual_saturation;
+        const double effective = (here.saturation - retention.residual_saturation) / range;
+        effective_saturation_[i] = effective;
+        effective_saturation_slope_[i] = here.capacity / range;
+        pore_stress_[i] = bishop ? effective * p : std::max(p, 0.0);
+        pore_stress_slope_[i] = bishop ? effective + p * here.capacity / range : p > 0 ? 1.0 : 0.0;
         const double pores = skeleton.pore_volume[i].at(t) +
                              skeleton.softness[i] * (pore_stress_[i] - skeleton.expected_stress[i].at(t));
         const double density = std::exp(p / scene_.water.bulk_modulus);
@@ -154,7 +152,8 @@ void FlowSystem::evaluate_deforming(double t, std::span<const double> pressure) 
     for (size_t i = 0; i < network.neighbours.size(); ++i) {
         const auto a = static_cast<size_t>(network.neighbours[i].portion_a);
         const auto b = static_cast<size_t>(network.neighbours[i].portion_b);
-        const double exchanged = skeleton.projection[i] * (pore_stress_[a] - pore_stress_[b]);
+        const double exchanged = skeleton.projection[i] * effective_saturation_[a] * effective_saturation_[b] *
+                                 (pore_stress_[a] - pore_stress_[b]);
         stored_[static_cast<size_t>(network.portions[a].node)] += exchanged;
         stored_[static_cast<size_t>(network.portions[b].node)] -= exchanged;
     }
@@ -259,10 +258,16 @@ void FlowSystem::assemble(double storage, double step, SparseMatrix& matrix) con
     for (size_t i = 0; i < neighbour_places_.size(); ++i) {
         const double softness = storage * skeleton.projection[i];
         const Link& pair = network.neighbours[i];
-        add_exchange(pair, neighbour_places_[i],
-                     {softness * pore_stress_slope_[static_cast<size_t>(pair.portion_a)],
-                      -softness * pore_stress_slope_[static_cast<size_t>(pair.portion_b)]},
-                     matrix);
+        const auto a = static_cast<size_t>(pair.portion_a);
+        const auto b = static_cast<size_t>(pair.portion_b);
+        const double difference = pore_stress_[a] - pore_stress_[b];
+        add_exchange(
+            pair, neighbour_places_[i],
+            {softness * effective_saturation_[b] *
+                 (effective_saturation_slope_[a] * difference + effective_saturation_[a] * pore_stress_slope_[a]),
+             softness * effective_saturation_[a] *
+                 (effective_saturation_slope_[b] * difference - effective_saturation_[b] * pore_stress_slope_[b])},
+            matrix);
     }
 }
 

@@ -41,7 +41,8 @@ struct SkeletonMotion {
     std::vector<double> softness;       ///< per portion, m3/Pa; empty: rigid
     std::vector<Ramp> expected_stress;  ///< per portion, Pa
     std::vector<double>
-        projection;  ///< per neighbours, m3/Pa: pressure projection, which keeps equal-order elements from oscillating
+        projection;  ///< per neighbours, m3/Pa: pressure projection, which keeps equal-order elements from oscillating; it fades
+                     ///< with the effective saturation of either end, which has only that water to give
 };
 
 class FlowSystem {
@@ -119,7 +120,8 @@ private:
         std::array<double, 2> permeability_slope;
     };
     std::vector<LinkState> link_state_;
-    std::vector<double> pore_stress_, pore_stress_slope_;  // per portion, deforming only
+    std::vector<double> pore_stress_, pore_stress_slope_;                    // per portion, deforming only
+    std::vector<double> effective_saturation_, effective_saturation_slope_;  // likewise
     std::vector<double> stored_, inflow_, node_pore_volume_;
     FlowTotals total_rates_{};
 
