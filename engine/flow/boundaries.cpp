@@ -99,6 +99,7 @@ private:
             const int32_t index = surface_index(node);
             SurfaceNode& here = result_.surface[static_cast<size_t>(index)];
             here.area += share * geometry.area;
+            here.pond_area += share * origin.area;
             here.rain_area += share * std::max(0.0, geometry.horizontal);
             here.conductivity = std::max(here.conductivity, largest_conductivity(scene_, mesh_, facet.cell));
             for (size_t zone = 0; zone < scene_.surface.zones.size(); ++zone) {

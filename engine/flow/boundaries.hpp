@@ -17,6 +17,7 @@ namespace talus {
 struct SurfaceNode {
     int32_t node;
     double area = 0;          ///< of the surface, m2 (per metre of thickness)
+    double pond_area = 0;     ///< the same at the start: a pond whose floor moves neither gains nor loses water
     double rain_area = 0;     ///< its horizontal projection, where it faces up, m2
     double conductivity = 0;  ///< largest saturated conductivity at the node, m/s: scale of the weir
 };

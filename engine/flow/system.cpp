@@ -219,8 +219,8 @@ void FlowSystem::evaluate_surface(std::span<const double> pressure, std::span<co
         inflow_[node] += rain;
         const double p = pressure[node];
         if (p <= 0) continue;
-        stored_[node] += surface.area * std::min(p, pond_pressure) / unit_weight;
-        if (p < pond_pressure) stored_slope_[node] += surface.area / unit_weight;
+        stored_[node] += surface.pond_area * std::min(p, pond_pressure) / unit_weight;
+        if (p < pond_pressure) stored_slope_[node] += surface.pond_area / unit_weight;
         if (p <= pond_pressure) continue;
         const double conductance = (surface.area * surface.conductivity + rain) / (unit_weight * weir_thickness);
         const double excess = conductance * (p - pond_pressure + (beyond.empty() ? 0.0 : beyond[node]));
