@@ -28,14 +28,13 @@ double elevation(const Profile& profile, double x) {
 
 // --- grid lines ------------------------------------------------------------------------------------------------------
 
-/// Columns beside a bend of the terrain: `bend` wide there, wider by the ratio `growth` from one to the next, at most `widest`.
+/// Columns beside a bend of the terrain: `bend` wide there, wider by `slope` times the distance from it, at most `widest`.
 struct ColumnWidths {
-    double bend, widest, growth;
+    double bend, widest, slope;
 
-    /// How many columns there are within a distance of the bend: the integral of 1 / (bend + slope distance), slope = ln(growth).
+    /// How many columns there are within a distance of the bend: the integral of 1 / (bend + slope distance).
     [[nodiscard]] double columns(double distance) const {
         const double graded = std::min(distance, graded_distance());
-        const double slope = std::log(growth);
         const double near = slope > 0 ? std::log1p(slope * graded / bend) / slope : graded / bend;
         return near + (distance - graded) / widest;
     }
@@ -43,14 +42,13 @@ struct ColumnWidths {
     /// The distance within which there are so many columns.
     [[nodiscard]] double distance(double count) const {
         const double graded = columns(graded_distance());
-        const double slope = std::log(growth);
         if (count > graded) return graded_distance() + (count - graded) * widest;
         return slope > 0 ? bend * std::expm1(slope * count) / slope : bend * count;
     }
 
 private:
     [[nodiscard]] double graded_distance() const {
-        return growth > 1 ? (widest - bend) / std::log(growth) : std::numeric_limits<double>::infinity();
+        return slope > 0 ? (widest - bend) / slope : std::numeric_limits<double>::infinity();
     }
 };
 
@@ -84,16 +82,29 @@ std::vector<GridVertex> grid_vertices(const SectionGround& section, const std::v
     return apart;
 }
 
+/// The greatest distance from a bend, m; 0 without bends.
+double farthest_from_bends(const std::vector<GridVertex>& vertices) {
+    double farthest = 0;
+    for (size_t v = 1; v < vertices.size(); ++v) {
+        const double length = vertices[v].x - vertices[v - 1].x;
+        const int bends = (vertices[v - 1].is_bend ? 1 : 0) + (vertices[v].is_bend ? 1 : 0);
+        if (bends > 0) farthest = std::max(farthest, length / bends);
+    }
+    return farthest;
+}
+
 /// x of the vertical grid lines: every vertex of every profile, and columns between them, equal or graded towards bends.
 std::vector<double> grid_lines(const SectionGround& section, const std::vector<const Profile*>& profiles) {
     const std::vector<GridVertex> vertices = grid_vertices(section, profiles);
     const double bend = section.bend_column_width > 0 ? section.bend_column_width : section.column_width;
+    const double farthest = farthest_from_bends(vertices);
+    const double even_slope = farthest > 0 ? (section.column_width - bend) / farthest : 0;
+    const double slope = section.growth > 0 ? std::log(section.growth) : even_slope;
     std::vector<double> lines = {vertices.front().x};
     for (size_t v = 1; v < vertices.size(); ++v) {
         const auto [from, bends_from] = vertices[v - 1];
         const auto [to, bends_to] = vertices[v];
-        const ColumnWidths widths{bends_from || bends_to ? bend : section.column_width, section.column_width,
-                                  section.growth};
+        const ColumnWidths widths{bends_from || bends_to ? bend : section.column_width, section.column_width, slope};
         const double length = to - from;
         const bool bends_twice = bends_from && bends_to;
         const double columns = bends_twice ? 2 * widths.columns(length / 2) : widths.columns(length);
@@ -149,6 +160,14 @@ double cell_height(const SectionGround& section, double growth, double depth) {
     const double below = depth - section.graded_depth;
     if (below < -1e-9 * surface_height) return surface_height;
     return std::min(section.largest_cell_height, growth * surface_height + (growth - 1) * std::max(0., below));
+}
+
+/// The growth with which heights are linear in the depth, and the largest at the greatest depth: a height is then the same function of the
+/// depth on every mesh, but for a factor.
+double even_growth(const SectionGround& section, double greatest_depth) {
+    const double gain = section.largest_cell_height - section.surface_cell_height;
+    const double growing = greatest_depth - section.graded_depth;
+    return 1 + gain / std::max(growing, section.largest_cell_height);
 }
 
 double depth_after(const SectionGround& section, double growth, double depth, int32_t rows) {
@@ -263,7 +282,7 @@ void add_cell(int32_t bottom_left, int32_t bottom_right, int32_t top_right, int3
 }  // namespace
 
 Mesh build_section(const Scene& scene) {
-    const SectionGround& section = scene.ground.section;
+    SectionGround section = scene.ground.section;
     std::vector<const Profile*> profiles = {&section.terrain};
     for (size_t k = 1; k < section.layers.size(); ++k) profiles.push_back(&section.layers[k].top);
     profiles.push_back(&section.base);
@@ -276,6 +295,7 @@ Mesh build_section(const Scene& scene) {
     const std::vector<double> lines = grid_lines(section, profiles);
     double height = 0;
     for (const Place& place : section.terrain) height = std::max(height, place[1] - elevation(section.base, place[0]));
+    if (!(section.growth > 0)) section.growth = even_growth(section, height);
     std::vector<std::vector<double>> interfaces;
     interfaces.reserve(lines.size());
     for (const double x : lines) interfaces.push_back(interfaces_at(profiles, x, height));

@@ -127,13 +127,16 @@ void check_layers(const Check& check, const SectionGround& section, const std::v
     }
 }
 
-/// Rows of cells down to a depth: equal ones, growing ones, equal ones again.
+/// Rows of cells down to a depth: equal ones, growing ones, equal ones again; or, without a growth, equal ones and evenly growing ones.
 double row_count(const SectionGround& section, double depth) {
-    const double graded = std::min(section.graded_depth, depth) / section.surface_cell_height;
-    const double ratio = section.largest_cell_height / section.surface_cell_height;
-    const double growing = section.growth > 1 ? std::log(ratio) / std::log(section.growth) : 0;
+    const double graded_depth = std::min(section.graded_depth, depth);
+    const double graded = graded_depth / section.surface_cell_height;
+    const double gain = section.largest_cell_height - section.surface_cell_height;
+    const double range = std::log(section.largest_cell_height / section.surface_cell_height);
+    if (!(section.growth > 0) && gain > 0) return graded + (depth - graded_depth) / gain * range;
+    const double growing = section.growth > 1 ? range / std::log(section.growth) : 0;
     const double smallest = section.growth > 1 ? section.largest_cell_height : section.surface_cell_height;
-    return graded + growing + (depth - std::min(section.graded_depth, depth)) / smallest;
+    return graded + growing + (depth - graded_depth) / smallest;
 }
 
 void check_cells(const Check& check, const SectionGround& section, bool profiles_hold) {

@@ -113,7 +113,7 @@ void fields(auto& visit, Is<SectionGround> auto& section) {
     visit.positive("columnWidth", section.column_width);
     visit.positive("surfaceCellHeight", section.surface_cell_height);
     visit("gradedDepth", section.graded_depth);
-    visit("growth", section.growth);
+    visit.positive("growth", section.growth);
     visit.positive("largestCellHeight", section.largest_cell_height);
     visit.positive("bendColumnWidth", section.bend_column_width);
 }

@@ -291,8 +291,9 @@ struct SectionGround {
   # Height of the uppermost cells. Required.
   gradedDepth @5 :Float64 = 0 $limits(unit = "m", low = 0, high = 1e5);
   # Down to this depth cells have surfaceCellHeight.
-  growth @6 :Float64 = 1.2 $limits(low = 1, high = 4);
-  # Ratio of a cell's height to that of the cell above it, below gradedDepth.
+  growth @6 :Float64 = nan $limits(low = 1, high = 4);
+  # Ratio of a cell's height to that of the cell above it, below gradedDepth. Left out: heights grow evenly with the depth, and are
+  # largestCellHeight at the greatest depth; columns widen evenly away from bends, and are columnWidth wide where bends are farthest.
   largestCellHeight @7 :Float64 = nan $limits(unit = "m", low = 1e-4, high = 1e5);
   # Required, at least surfaceCellHeight.
   bendColumnWidth @8 :Float64 = nan $limits(unit = "m", low = 1e-4, high = 1e5);

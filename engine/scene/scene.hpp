@@ -68,7 +68,7 @@ struct SectionGround {
     double column_width = 0;           ///< target width of a column, m
     double surface_cell_height = 0;    ///< height of the uppermost cell, m
     double graded_depth = 0;           ///< down to this depth cells have surface_cell_height, m
-    double growth = 1.2;               ///< ratio of a cell's height to the one above it below graded_depth
+    double growth = 0;                 ///< ratio of a cell's height to the one above it; NaN or 0: even growth
     double largest_cell_height = 0;    ///< m
     double bend_column_width = 0;      ///< width of a column beside a bend of the terrain, m; NaN or 0: column_width
 };

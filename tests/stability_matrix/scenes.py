@@ -73,7 +73,7 @@ def sloping(ground, soils, rain=1e-6, table=1.0, stress="net"):
 def section(terrain, base, width, height, largest, layers):
     """Columns of cells as wide as `width`, `height` at the surface and growing to `largest` below."""
     return {"section": {"terrain": terrain, "base": base, "layers": layers, "columnWidth": width, "surfaceCellHeight": height,
-                        "largestCellHeight": largest}}
+                        "growth": 1.2, "largestCellHeight": largest}}
 
 
 def small_slope(scale=1.0, rain=1e-6, stress="net", soils=None, layers=None, **numbers):

@@ -67,6 +67,28 @@ TEST_CASE("upper rows keep their heights where the ground is deep enough, and de
     }
 }
 
+TEST_CASE("without a growth heights are linear in the depth, on every mesh the same but for a factor") {
+    const auto heights = [](double factor) {
+        Scene scene = slope_scene();
+        scene.ground.section.growth = 0;
+        scene.ground.section.graded_depth = 0;
+        scene.ground.section.surface_cell_height = 0.1 * factor;
+        scene.ground.section.largest_cell_height = 2 * factor;
+        const Mesh mesh = build_mesh(scene);
+        check_conforming(mesh);
+        return elevations_at(mesh, 0);
+    };
+    for (const double factor : {0.5, 1., 2.}) {
+        const std::vector<double> y = heights(factor);
+        for (size_t row = 0; row + 1 < y.size(); ++row) {
+            const double middle = 30 - 0.5 * (y[row] + y[row + 1]);
+            const double linear = factor * (0.1 + 1.9 * middle / 30);
+            CHECK(y[row] - y[row + 1] < 1.1 * linear);
+            CHECK(y[row] - y[row + 1] > 0.8 * linear);
+        }
+    }
+}
+
 TEST_CASE("where the ground is too thin for its rows they shrink in proportion") {
     Scene scene = slope_scene();
     scene.ground.section.terrain = {{0, 30}, {20, 30}, {40, 5}, {60, 5}};
@@ -239,6 +261,21 @@ TEST_CASE("columns are narrow beside the bends of the terrain and widen away fro
                 CHECK(widths[i] == doctest::Approx(widths[widths.size() - 1 - i]).epsilon(1e-9));
         }
     }
+}
+
+TEST_CASE("without a growth columns widen evenly to where bends are farthest") {
+    Scene scene = slope_scene();
+    scene.ground.section.growth = 0;
+    scene.ground.section.column_width = 2;
+    scene.ground.section.bend_column_width = 0.4;
+    const Mesh mesh = build_mesh(scene);
+    check_conforming(mesh);
+    double from_bend = 0;
+    for (const double width : column_widths(mesh, 40, 60)) {
+        CHECK(width == doctest::Approx(0.4 + 1.6 * (from_bend + width / 2) / 20).epsilon(0.06));
+        from_bend += width;
+    }
+    for (const double width : column_widths(mesh, 20, 40)) CHECK(width < 0.4 + 1.6 / 2 + 1e-9);
 }
 
 TEST_CASE("without a width at the bends, or with the columns' own, columns are equal") {
