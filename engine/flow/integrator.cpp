@@ -14,12 +14,12 @@
 namespace talus {
 namespace {
 
-constexpr double stage_tolerance =
-    1e-9;  // of a node's pore volume: Newton converges quadratically, so this costs one iteration
-constexpr double balance = 1e-9;      // of the water that crossed the edge of the ground until then,
-constexpr double end_share = 1e-9;    // of an advance: round-off in its times
-constexpr double worth_share = 1e-3;  // of an advance: a shorter last substep is not tried for the balance's sake
-constexpr double little = 1e-6;  // or, where less than this of the water stored did, of that: beyond it is rounding
+constexpr double stage_share = 1e-4;  // of the tolerance: what Newton's method may leave at a node, of its pore volume
+constexpr double end_tolerance = 1e-9;  // likewise, at the end of an advance, where a host may look
+constexpr double balance = 1e-9;        // of the water that crossed the edge of the ground until then,
+constexpr double end_share = 1e-9;      // of an advance: round-off in its times
+constexpr int most_refusals = 6;  // of last substeps for the balance's sake: a node without water has none to give
+constexpr double little = 1e-6;   // or, where less than this of the water stored did, of that: beyond it is rounding
 
 void check(int flag, const char* call) {
     if (flag != 0) throw Error(Status::internal, std::string("SUNDIALS ") + call + " returned " + std::to_string(flag));
@@ -60,6 +60,7 @@ struct FlowIntegrator::Arkode {
     double stage_time = 0;
     double accepted_time = 0;
     double duration = 0;  // s, of the advance
+    int refusals = 0;     // of its last substeps
     std::vector<double> target;
 
     Arkode(FlowSystem& system_in, double tolerance_in);
@@ -69,6 +70,7 @@ struct FlowIntegrator::Arkode {
 
     void start(const FlowState& state);
     void make_memory();
+    [[nodiscard]] bool is_end(double t) const { return t >= (1.0 - end_share) * duration; }
     [[nodiscard]] StageAccuracy accuracy(double t, double gamma) const;
     int solve_stage(N_Vector correction);
 
@@ -156,14 +158,15 @@ int FlowIntegrator::Arkode::weights(N_Vector, N_Vector weight, void* user) {
 
 // A host reads the water in the ground from the pressures, so Newton's remainder is what its balance misses, at the end of an advance.
 StageAccuracy FlowIntegrator::Arkode::accuracy(double t, double gamma) const {
-    const bool is_end = t >= (1.0 - end_share) * duration;
-    if (!is_end || gamma < worth_share * duration) return {stage_tolerance, std::numeric_limits<double>::infinity()};
+    constexpr double any = std::numeric_limits<double>::infinity();
+    if (!is_end(t)) return {stage_share * tolerance, any};
+    if (refusals >= most_refusals) return {end_tolerance, any};
     const double* totals = N_VGetArrayPointer(variables) + target.size();
     double moved = 0;
     for (const size_t k : {rain_total, seepage_total, inflow_total, drained_total})
         moved += totals[k] + gamma * system.total_rates()[k];
     const double stored = std::accumulate(target.begin(), target.end(), 0.0);
-    return {stage_tolerance, balance * std::max(moved, little * stored)};
+    return {end_tolerance, balance * std::max(moved, little * stored)};
 }
 
 // One stage z = known + gamma rate(z), where known = predicted + sdata. What the nodes hold after it is defined by the flows, not by the
@@ -182,6 +185,7 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
     for (size_t i = 0; i < target.size(); ++i) target[i] = before[i] + change[i];
     if (stage_time <= accepted_time || stage_time >= t) stage = accepted;
     if (!solver.solve(t, gamma, target, accuracy(t, gamma), stage)) {
+        if (is_end(t)) ++refusals;
         stage_time = accepted_time;
         return SUN_NLS_CONV_RECVR;
     }
@@ -211,6 +215,7 @@ AdvanceResult FlowIntegrator::advance(FlowState& state, double duration, const A
     Arkode& ark = *arkode_;
     ark.start(state);
     ark.duration = duration;
+    ark.refusals = 0;
     ARKStepSetStopTime(ark.memory, duration);
     if (state.substep > 0) ARKStepSetInitStep(ark.memory, std::min(state.substep, duration));
     const int64_t iterations_before = ark.solver.iterations();
@@ -256,7 +261,7 @@ bool FlowIntegrator::find_steady(FlowState& state) {
         system.evaluate(0.0, state.pressure);
         arkode_->target.assign(system.stored().begin(), system.stored().end());
         trial = state.pressure;
-        const double tolerance = stage_tolerance * std::max(1.0, step / long_step);
+        const double tolerance = end_tolerance * std::max(1.0, step / long_step);
         const StageAccuracy accuracy{tolerance, std::numeric_limits<double>::infinity()};
         const bool solved = arkode_->solver.solve(0.0, step, arkode_->target, accuracy, trial);
         const double imbalance = system.imbalance();

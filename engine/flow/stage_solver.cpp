@@ -13,8 +13,7 @@ constexpr int most_halvings = 6;
 constexpr double good_contraction = 0.2;  // of the residuals in one iteration, with which the factors at hand are kept
 constexpr double like_steps = 0.2;        // relative difference of two time steps that may share factors
 constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more has little left to gain,
-constexpr double enough = 10.0;  // times the sum aimed at, after all iterations: a node without water has none to give
-constexpr double gaining = 0.5;  // and nothing where it leaves more than this of the residuals
+constexpr double gaining = 0.5;      // and nothing where it leaves more than this of the residuals
 
 double largest_relative_change(std::span<const double> pressure, std::span<const double> change) {
     double largest = 0;
@@ -98,7 +97,7 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
         error = trial_error;
         if (is_round_off && merit_ > gaining * merit) return std::isfinite(error);
     }
-    return error <= accuracy.node && std::abs(missing_) <= enough * accuracy.sum;
+    return is_met();
 }
 
 bool StageSolver::factorise(double step) {
