@@ -76,7 +76,6 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
         if (iteration == 0) first_disagreement = disagreement_;
         if (disagreement_ <= 1.0) break;
         expect_skeleton_at(duration, end_volume_, end_stress_);
-        equilibrium_->reject();
     }
     accept(duration, flow);
     state_.watch = watch;
