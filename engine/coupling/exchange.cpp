@@ -57,8 +57,10 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
                 return cancelled(t);
             };
             const AdvanceResult result = integrator_->advance(flow, duration, after_substep);
-            if (result == AdvanceResult::cancelled) return Exchange::cancelled;
-            if (result == AdvanceResult::failed) return Exchange::flow_stopped;
+            if (result != AdvanceResult::done) {
+                if (moves) equilibrium_->reject();
+                return result == AdvanceResult::cancelled ? Exchange::cancelled : Exchange::flow_stopped;
+            }
         }
         if (!moves) break;
         outcome_ = find_equilibrium(flow, state_.time + duration);

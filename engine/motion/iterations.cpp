@@ -156,7 +156,8 @@ void Equilibrium::find_mechanism(CollapseEvidence& evidence) {
     locate_mechanism(kinematics_, points_, start_, evidence);
 }
 
-/// Largest displacement that the whole loads would give the skeleton if it did not yield, m.
+/// Largest displacement that the whole loads would give the skeleton if it did not yield, m; times the contrast of its moduli, since
+/// the stiff ground, where it yields, may leave the loads to the soft.
 double Equilibrium::elastic_displacement(EquilibriumOutcome& outcome) {
     for (size_t i = 0; i < direction_.size(); ++i)
         direction_[i] = external_[static_cast<size_t>(equations_.freedom[i])];
@@ -164,7 +165,7 @@ double Equilibrium::elastic_displacement(EquilibriumOutcome& outcome) {
     ++outcome.iterations;
     double largest = 0;
     for (const double u : direction_) largest = std::max(largest, std::abs(u));
-    return largest;
+    return largest * skeleton_.stiffness_contrast();
 }
 
 bool Equilibrium::watch(CollapseWatch& watch, std::span<const double> last_direction) const {

@@ -225,4 +225,15 @@ double Skeleton::least_factor_of_safety() const {
     return least;
 }
 
+double Skeleton::stiffness_contrast() const {
+    double softest = std::numeric_limits<double>::infinity();
+    double stiffest = 0;
+    for (const CellBlock& block : kinematics_.blocks()) {
+        const double modulus = solids_[static_cast<size_t>(block.soil)].young_modulus;
+        softest = std::min(softest, modulus);
+        stiffest = std::max(stiffest, modulus);
+    }
+    return stiffest / softest;
+}
+
 }  // namespace talus

@@ -60,6 +60,9 @@ public:
     /// Least local factor of safety of the points' present stress; infinite where no soil is mohr_coulomb.
     [[nodiscard]] double least_factor_of_safety() const;
 
+    /// Largest over smallest Young's modulus of the soils that there are.
+    [[nodiscard]] double stiffness_contrast() const;
+
 private:
     struct State {
         std::vector<double> stress, strain, plastic_strain, mobilised_strength;
