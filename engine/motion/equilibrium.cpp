@@ -31,7 +31,7 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
     elastic_.solver->factorise(elastic_.matrix);
 }
 
-EquilibriumOutcome Equilibrium::solve(const Loads& loads) {
+EquilibriumOutcome Equilibrium::solve(const Loads& loads, int32_t most_creep_steps) {
     constexpr double worth_predicting = 1e-2;
     EquilibriumOutcome outcome;
     start(loads);
@@ -43,7 +43,7 @@ EquilibriumOutcome Equilibrium::solve(const Loads& loads) {
             predict(worth_predicting, outcome);
             unbalance();
         }
-        if (!accelerate(outcome)) creep(outcome);
+        if (!accelerate(outcome)) creep(most_creep_steps, outcome);
     }
     finish(outcome);
     return outcome;

@@ -49,8 +49,9 @@ public:
 
     /// Finds the displacement increment from the accepted state that balances the loads. The points' stress, strain, plastic
     /// strain and mobilised strength are a trial state until accept() or reject(). Starts from the increment of the last solve
-    /// where that was neither accepted nor rejected: loads that hardly differ are then soon balanced.
-    EquilibriumOutcome solve(const Loads& loads);
+    /// where that was neither accepted nor rejected: loads that hardly differ are then soon balanced. After so many steps of creep it is
+    /// given up.
+    EquilibriumOutcome solve(const Loads& loads, int32_t most_creep_steps = 200);
 
     /// As solve() for a skeleton that does not yield: gravity turned on elastically.
     EquilibriumOutcome solve_elastically(const Loads& loads);
@@ -99,7 +100,7 @@ private:
     double relative_residual();
     void predict(double wanted, EquilibriumOutcome& outcome);
     bool accelerate(EquilibriumOutcome& outcome);
-    bool creep(EquilibriumOutcome& outcome);
+    bool creep(int32_t most_steps, EquilibriumOutcome& outcome);
     double follow_direction();
     void find_mechanism(CollapseEvidence& evidence);
     double elastic_displacement(EquilibriumOutcome& outcome);

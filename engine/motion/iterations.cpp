@@ -93,8 +93,7 @@ bool Equilibrium::accelerate(EquilibriumOutcome& outcome) {
 /// (tangent + viscosity * elastic stiffness) step = unbalanced force. The viscosity falls with the unbalanced force, which ends in
 /// Newton's method where a balance exists (pseudo-transient continuation; Kelley & Keyes, SIAM J. Numer. Anal. 35, 1998), and in
 /// the steady motion of a mechanism where there is none. True: arrived.
-bool Equilibrium::creep(EquilibriumOutcome& outcome) {
-    constexpr int32_t most_steps = 200;
+bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome) {
     constexpr double first_viscosity = 0.01, largest_viscosity = 1e3;
     constexpr double smallest_ratio = 0.1, steady_ratio = 0.8;
     CollapseWatch collapse(elastic_displacement(outcome));
