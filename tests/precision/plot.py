@@ -1,4 +1,4 @@
-"""Error against wall and CPU seconds, log-log: a row of axes a headline quantity, a line a tolerance."""
+"""Error against wall and CPU seconds, log-log: a row of axes a headline quantity, a line a tolerance and kind of cells."""
 
 import matplotlib
 
@@ -15,10 +15,11 @@ def file_of(case):
 
 
 def draw_tolerances(axes, rows, cost, quantity):
-    for tolerance in sorted({row["setting"]["tolerance"] for row in rows}, reverse=True):
-        line = sorted((row for row in rows if row["setting"]["tolerance"] == tolerance), key=lambda row: row["nodes"])
-        axes.loglog([row[cost] for row in line], [quantity.of(row) for row in line], "o-", markersize=4, linewidth=0.8,
-                    label=f"tolerance {tolerance:g}")
+    for even, tolerance in sorted({(row["setting"]["even"], row["setting"]["tolerance"]) for row in rows}, reverse=True):
+        line = sorted((row for row in rows if (row["setting"]["even"], row["setting"]["tolerance"]) == (even, tolerance)),
+                      key=lambda row: row["nodes"])
+        axes.loglog([row[cost] for row in line], [quantity.of(row) for row in line], "^--" if even else "o-", markersize=4,
+                    linewidth=0.8, label=f"tolerance {tolerance:g}" + (", even cells" if even else ""))
 
 
 def draw_marks(axes, rows, baseline, cost, quantity):

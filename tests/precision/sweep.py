@@ -10,7 +10,7 @@ import slopes
 import talus
 from isolated import in_a_process
 from rows import REFERENCES, read_scene
-from settings import set_resolution, set_tolerance
+from settings import set_even_growth, set_resolution, set_tolerance
 
 WALL_BOUND = 120.0  # s: a run that takes longer is stopped
 LEAST_MEASURED = 1.0  # s: shorter runs are repeated until they add up to this,
@@ -19,12 +19,15 @@ MOST_REPEATS = 5  # but no more than this, and the quickest counts
 
 # --- one run ---
 
-def run(case, coarsening, loosening):
+def run(case, coarsening, loosening, even=False):
     """A row: setting, size, errors and seconds, or the reason why there are none."""
     scene = read_scene(case)
-    setting = {"resolution_m": set_resolution(scene, coarsening), "tolerance": set_tolerance(scene, loosening)}
-    row = {"case": case, "setting": setting, "default": coarsening == 1 and loosening == 1, "nodes": None, "errors": None,
-           "wall_s": None, "cpu_s": None, "reason": None}
+    if even:
+        set_even_growth(scene)
+    setting = {"resolution_m": set_resolution(scene, coarsening), "tolerance": set_tolerance(scene, loosening), "even": even}
+    default = coarsening == 1 and loosening == 1 and not even
+    row = {"case": case, "setting": setting, "default": default, "nodes": None, "errors": None, "wall_s": None, "cpu_s": None,
+           "reason": None}
     outcome, result = in_a_process(WALL_BOUND, measure_or_say, case, scene)
     return {**row, **(result if outcome == "finished" else {"reason": result})}
 
