@@ -25,6 +25,14 @@ double vertical_extent(const Mesh& mesh) {
     return high - low;
 }
 
+/// Ground softer than its own weight would be flattened by it.
+void check_stiffness(const Soil& soil, double weight) {
+    if (soil.solid.young_modulus > weight) return;
+    throw Error(Status::invalid_scene,
+                "youngModulus = " + value_text(soil.solid.young_modulus) + " of soil " + soil.name +
+                    ": must be larger than its weight over the height of the ground, " + value_text(weight) + " Pa");
+}
+
 /// Suction at which a soil has a given saturation.
 double suction_of(const HydraulicTable& table, const Soil& soil, size_t number, double saturation) {
     const Retention& retention = soil.hydraulics.retention;
@@ -111,6 +119,7 @@ void Simulation::make_motion() {
 
     std::vector<Solid> solids;
     for (const Soil& soil : scene_.soils) {
+        check_stiffness(soil, scene_.gravity * soil.dry_density * vertical_extent(mesh_));
         solids.push_back(soil.solid);
         // The skeleton's answer to pore stress at constant total stress: the fixed-stress split's modulus, lambda + G in plane strain and the
         // oedometric one in a column. The pressure projection (Bochev, Dohrmann & Gunzburger 2006) has the oedometric one in both: with it

@@ -147,12 +147,14 @@ int FlowIntegrator::Arkode::right_hand_side(realtype t, N_Vector, N_Vector resul
     return 0;
 }
 
+// A held node's water follows what holds it, which may jump where the ground under a water table has moved: no error of a substep.
 int FlowIntegrator::Arkode::weights(N_Vector, N_Vector weight, void* user) {
     const Arkode& self = *static_cast<Arkode*>(user);
     double* w = N_VGetArrayPointer(weight);
+    constexpr double none = std::numeric_limits<double>::min();
     const std::span<const double> pores = self.system.pore_volume();
-    for (size_t i = 0; i < pores.size(); ++i) w[i] = 1.0 / (self.tolerance * pores[i]);
-    std::fill(w + pores.size(), w + pores.size() + flow_total_count, std::numeric_limits<double>::min());
+    for (size_t i = 0; i < pores.size(); ++i) w[i] = self.system.is_held(i) ? none : 1.0 / (self.tolerance * pores[i]);
+    std::fill(w + pores.size(), w + pores.size() + flow_total_count, none);
     return 0;
 }
 
