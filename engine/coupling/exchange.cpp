@@ -77,6 +77,7 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
         compare_pore_volumes(flow);
         if (iteration == 0) first_disagreement = disagreement_;
         if (disagreement_ <= 1.0) break;
+        correct_expectation();
         expect_skeleton_at(duration, end_volume_, end_stress_);
     }
     accept(duration, flow);
@@ -141,7 +142,7 @@ void Simulation::expect_skeleton(double duration) {
     } else {
         flow_->skeleton.softness = elastic_softness_;
     }
-    std::fill(mismatch_.begin(), mismatch_.end(), 0.0);
+    acceleration_.restart();
     expect_skeleton_at(duration, end_volume_, end_stress_);
 }
 
@@ -176,7 +177,6 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
                 strain * flow_->network.corner_volume[corner];
         }
     }
-    constexpr double halved = 0.5;
     disagreement_ = 0;
     flow_->evaluate(0.0, flow.pressure);  // for the capacity
     for (size_t i = 0; i < portions.size(); ++i) {
@@ -186,29 +186,19 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
         const HydraulicState& state = flow_->state()[i];
         const double storage =
             found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + elastic_softness_[i];
-        const double mismatch = found[i] - taken;
-        disagreement_ = std::max(disagreement_, std::abs(mismatch) / (storage * agreement_pressure_));
-        if (mismatch_[i] != 0 && std::abs(mismatch) > halved * std::abs(mismatch_[i])) soften(i, pressure, stress);
-        mismatch_[i] = mismatch;
-        end_volume_[i] = found[i];
+        disagreement_ = std::max(disagreement_, std::abs(found[i] - taken) / (storage * agreement_pressure_));
+        correction_[i] = (found[i] - taken) / elastic_softness_[i];
         end_stress_[i] = stress;
         taken_volume_[i] = taken;
     }
 }
 
-// Ground that yields is softer than the elastic one that the split takes it for, and with less than half the true softness its iterations
-// diverge: this portion's is then the secant of the last two. Under suction Bishop's pore stress S_e p may fall as the pressure rises; the
-// softness stays so small that the water stored does not.
-void Simulation::soften(size_t portion, double pressure, double stress) {
-    constexpr double softest = 1e6;  // times the elastic: at an apex the ground has no stiffness left
-    const double change = stress - end_stress_[portion];
-    if (change == 0) return;
-    const double elastic = elastic_softness_[portion];
-    double most = softest * elastic;
-    if (scene_.physics.stress == StressMeasure::bishop && pressure < 0)
-        most = std::min(most, 0.5 * found_volume_[portion] / -pressure);
-    const double secant = (found_volume_[portion] - end_volume_[portion]) / change;
-    flow_->skeleton.softness[portion] = std::max(elastic, std::min(secant, most));
+// The next expectation. Plainly it would be what the skeleton found; where that diverges, in undrained ground that yields and is softer than
+// the split takes it for, or creeps, in ground so confined that it is stiffer, the last iterations tell how to correct it.
+void Simulation::correct_expectation() {
+    acceleration_.accelerate(correction_);
+    for (size_t i = 0; i < end_volume_.size(); ++i)
+        end_volume_[i] = taken_volume_[i] + elastic_softness_[i] * correction_[i];
 }
 
 void Simulation::accept(double duration, const FlowState& flow) {

@@ -9,6 +9,7 @@
 #include "coupling/ground_state.hpp"
 #include "flow/integrator.hpp"
 #include "ground/mesh.hpp"
+#include "motion/anderson.hpp"
 #include "motion/equilibrium.hpp"
 #include "scene/scene.hpp"
 
@@ -102,7 +103,7 @@ private:
     void expect_skeleton(double duration);
     void expect_skeleton_at(double duration, std::span<const double> volume, std::span<const double> stress);
     void compare_pore_volumes(const FlowState& flow);
-    void soften(size_t portion, double pressure, double stress);
+    void correct_expectation();
     void accept(double duration, const FlowState& flow);
     EquilibriumOutcome find_equilibrium(const FlowState& flow, double until);
     // what passes between them (loads.cpp)
@@ -142,12 +143,13 @@ private:
 
     // Of the exchange under way
     std::vector<double> portion_stress_, point_pressure_;
-    std::vector<double> start_stress_;      // per portion, Pa
-    std::vector<double> end_stress_;        // per portion, Pa, as the flow found it
-    std::vector<double> end_volume_;        // per portion, m3, as the skeleton is expected to have it
-    std::vector<double> taken_volume_;      // per portion, m3, as the flow took it
-    std::vector<double> found_volume_;      // per portion, m3, as the skeleton found it
-    std::vector<double> mismatch_;          // per portion, m3: found - taken of the last iteration; 0: none yet
+    std::vector<double> start_stress_;  // per portion, Pa
+    std::vector<double> end_stress_;    // per portion, Pa, as the flow found it
+    std::vector<double> end_volume_;    // per portion, m3, as the skeleton is expected to have it
+    std::vector<double> taken_volume_;  // per portion, m3, as the flow took it
+    std::vector<double> found_volume_;  // per portion, m3, as the skeleton found it
+    std::vector<double> correction_;    // per portion, Pa: of what is expected of the skeleton
+    Anderson acceleration_{0};
     std::vector<double> elastic_softness_;  // per portion, m3/Pa
     double disagreement_ = 0;  // largest difference of the two's pore volumes, over the one that is let stand
     std::vector<double> point_pore_stress_, point_density_, node_force_, prescribed_displacement_;
