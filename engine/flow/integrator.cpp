@@ -15,6 +15,7 @@ namespace talus {
 namespace {
 
 constexpr double stage_share = 1e-4;  // of the tolerance: what Newton's method may leave at a node, of its pore volume
+constexpr double loosest_stage = 1e-6;  // and at most this
 constexpr double end_tolerance = 1e-9;  // likewise, at the end of an advance, where a host may look
 constexpr double balance = 1e-9;        // of the water that crossed the edge of the ground until then,
 constexpr double end_share = 1e-9;      // of an advance: round-off in its times
@@ -161,7 +162,7 @@ int FlowIntegrator::Arkode::weights(N_Vector, N_Vector weight, void* user) {
 // A host reads the water in the ground from the pressures, so Newton's remainder is what its balance misses, at the end of an advance.
 StageAccuracy FlowIntegrator::Arkode::accuracy(double t, double gamma) const {
     constexpr double any = std::numeric_limits<double>::infinity();
-    if (!is_end(t)) return {stage_share * tolerance, any};
+    if (!is_end(t)) return {std::min(stage_share * tolerance, loosest_stage), any};
     if (refusals >= most_refusals) return {end_tolerance, any};
     const double* totals = N_VGetArrayPointer(variables) + target.size();
     double moved = 0;
