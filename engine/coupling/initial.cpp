@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 namespace talus {
@@ -24,33 +23,6 @@ double vertical_extent(const Mesh& mesh) {
         high = std::max(high, mesh.position[i]);
     }
     return high - low;
-}
-
-/// Vertical thickness of each soil, averaged over the width that it takes, m.
-std::vector<double> mean_thickness(const Mesh& mesh, const Points& points, size_t soils) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    std::vector<double> volume(soils, 0.0), low(soils, infinity), high(soils, -infinity);
-    for (size_t p = 0; p < points.volume.size(); ++p) volume[static_cast<size_t>(points.soil[p])] += points.volume[p];
-    if (mesh.dimension == 1) return volume;
-    for (size_t c = 0; c < mesh.cell_soil.size(); ++c) {
-        const auto soil = static_cast<size_t>(mesh.cell_soil[c]);
-        for (auto k = static_cast<size_t>(mesh.cell_start[c]); k < static_cast<size_t>(mesh.cell_start[c + 1]); ++k) {
-            const double x = mesh.position[2 * static_cast<size_t>(mesh.cell_nodes[k])];
-            low[soil] = std::min(low[soil], x);
-            high[soil] = std::max(high[soil], x);
-        }
-    }
-    for (size_t i = 0; i < soils; ++i)
-        if (volume[i] > 0) volume[i] /= high[i] - low[i];
-    return volume;
-}
-
-/// A soil softer than its own weight would be flattened by it.
-void check_stiffness(const Soil& soil, double weight) {
-    if (soil.solid.young_modulus > weight) return;
-    throw Error(Status::invalid_scene, "youngModulus = " + value_text(soil.solid.young_modulus) + " of soil " +
-                                           soil.name + ": must be larger than the soil's weight over its thickness, " +
-                                           value_text(weight) + " Pa");
 }
 
 /// Suction at which a soil has a given saturation.
@@ -139,9 +111,7 @@ void Simulation::make_motion() {
     motion_unknowns_ = static_cast<size_t>(std::count(prescribed.begin(), prescribed.end(), uint8_t{0}));
 
     std::vector<Solid> solids;
-    const std::vector<double> thickness = mean_thickness(mesh_, state_.points, scene_.soils.size());
     for (const Soil& soil : scene_.soils) {
-        check_stiffness(soil, scene_.gravity * soil.dry_density * thickness[solids.size()]);
         solids.push_back(soil.solid);
         // The skeleton's answer to pore stress at constant total stress: the fixed-stress split's modulus, lambda + G in plane strain and the
         // oedometric one in a column. The pressure projection (Bochev, Dohrmann & Gunzburger 2006) has the oedometric one in both: with it
