@@ -57,22 +57,16 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
                 return cancelled(t);
             };
             const AdvanceResult result = integrator_->advance(flow, duration, after_substep);
-            if (result != AdvanceResult::done) {
-                if (moves) equilibrium_->reject();
-                return result == AdvanceResult::cancelled ? Exchange::cancelled : Exchange::flow_stopped;
-            }
+            if (result == AdvanceResult::cancelled) return Exchange::cancelled;
+            if (result == AdvanceResult::failed) return Exchange::flow_stopped;
         }
         if (!moves) break;
         outcome_ = find_equilibrium(flow, state_.time + duration);
         if (outcome_.status != EquilibriumStatus::converged) {
-            equilibrium_->reject();
             return outcome_.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost
                                                                         : Exchange::disagreed;
         }
-        if (cancelled(duration)) {
-            equilibrium_->reject();
-            return Exchange::cancelled;
-        }
+        if (cancelled(duration)) return Exchange::cancelled;
         if (!flow_) break;
         compare_pore_volumes(flow);
         if (iteration == 0) first_disagreement = disagreement_;
@@ -136,11 +130,7 @@ void Simulation::expect_skeleton(double duration) {
         end_volume_[i] =
             stands ? state_.flow_pore_volume[i] : state_.pore_volume[i] + state_.pore_volume_rate[i] * duration;
         end_stress_[i] = start_stress_[i] + (stands ? 0.0 : state_.pore_stress_rate[i] * duration);
-    }
-    if (state_.equilibrium_lost) {
-        std::fill(flow_->skeleton.softness.begin(), flow_->skeleton.softness.end(), 0.0);
-    } else {
-        flow_->skeleton.softness = elastic_softness_;
+        if (stands) flow_->skeleton.softness[i] = 0.0;
     }
     acceleration_.restart();
     expect_skeleton_at(duration, end_volume_, end_stress_);
@@ -185,9 +175,9 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
         const double taken = end_volume_[i] + skeleton.softness[i] * (stress - end_stress_[i]);
         const HydraulicState& state = flow_->state()[i];
         const double storage =
-            found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + elastic_softness_[i];
+            found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + skeleton.softness[i];
         disagreement_ = std::max(disagreement_, std::abs(found[i] - taken) / (storage * agreement_pressure_));
-        correction_[i] = (found[i] - taken) / elastic_softness_[i];
+        correction_[i] = (found[i] - taken) / skeleton.softness[i];
         end_stress_[i] = stress;
         taken_volume_[i] = taken;
     }
@@ -198,7 +188,7 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
 void Simulation::correct_expectation() {
     acceleration_.accelerate(correction_);
     for (size_t i = 0; i < end_volume_.size(); ++i)
-        end_volume_[i] = taken_volume_[i] + elastic_softness_[i] * correction_[i];
+        end_volume_[i] = taken_volume_[i] + flow_->skeleton.softness[i] * correction_[i];
 }
 
 void Simulation::accept(double duration, const FlowState& flow) {

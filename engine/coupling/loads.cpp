@@ -59,7 +59,7 @@ void Simulation::set_loads(const FlowState& flow, double until) {
         const auto number = static_cast<size_t>(points.soil[p]);
         const Soil& soil = scene_.soils[number];
         double suction = 0;
-        double effective_saturation = 1;
+        double effective = 1;
         point_density_[p] = soil.dry_density * initial_volume_[p] / points.volume[p];
         if (flow_) {
             const Retention& retention = soil.hydraulics.retention;
@@ -68,16 +68,16 @@ void Simulation::set_loads(const FlowState& flow, double until) {
                 scene_.water.density * std::exp(point_pressure_[p] / scene_.water.bulk_modulus);
             point_density_[p] += porosity(p) * saturation * water_density;
             suction = std::max(0.0, -point_pressure_[p]);
-            effective_saturation = (saturation - retention.residual_saturation) /
-                                   (retention.maximum_saturation - retention.residual_saturation);
+            effective = effective_of_saturation(retention, saturation);
         }
-        point_strength_[p] = shear_strength(soil.solid.strength, suction, effective_saturation);
+        point_strength_[p] = shear_strength(soil.solid.strength, suction, effective);
     }
     std::fill(node_force_.begin(), node_force_.end(), 0.0);
     for (const GivenTraction& given : given_tractions_) add_traction(given, until);
-    if (flow_)
+    if (flow_) {
         for (const int32_t f : flow_->boundaries.surface_facets)
             add_pond(mesh_.facets[static_cast<size_t>(f)], flow.pressure);
+    }
     for (const GivenDisplacement& given : given_displacements_) {
         prescribed_displacement_[given.freedom] =
             forcing.motion_value(given.boundary, given.component, until) - state_.displacement[given.freedom];
@@ -147,15 +147,15 @@ void Simulation::refresh_geometry() {
     }
     talus::refresh_geometry(flow_->network, mesh_, scene_, conductivity_factor_);
     flow_->boundaries = make_flow_boundaries(mesh_, reference_mesh_, scene_);
-    std::fill(elastic_softness_.begin(), elastic_softness_.end(), 0.0);
+    std::vector<double>& softness = flow_->skeleton.softness;
+    std::fill(softness.begin(), softness.end(), 0.0);
     for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
         for (auto corner = static_cast<size_t>(mesh_.cell_start[c]);
              corner < static_cast<size_t>(mesh_.cell_start[c + 1]); ++corner) {
-            elastic_softness_[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
+            softness[static_cast<size_t>(flow_->network.corner_portion[corner])] +=
                 flow_->network.corner_volume[corner] * softness_[static_cast<size_t>(mesh_.cell_soil[c])];
         }
     }
-    flow_->skeleton.softness = elastic_softness_;
 }
 
 // The pressure projection in the stored water: per cell, volume / corners^2 times the difference of each pair of corners, which is what the

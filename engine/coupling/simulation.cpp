@@ -34,7 +34,9 @@ bool Simulation::advance(double until, const std::function<bool(double)>& cancel
         const bool is_last = state_.exchange_step >= left;
         const double duration = is_last ? left : std::min(state_.exchange_step, 0.5 * left);
         const auto watched = [&](double t) { return cancelled((state_.time + t - from) / whole); };
-        switch (exchange(duration, watched)) {
+        const Exchange result = exchange(duration, watched);
+        if (result != Exchange::agreed && skeleton_moves()) equilibrium_->reject();
+        switch (result) {
             case Exchange::agreed: state_.time = is_last ? stop : state_.time + duration; break;
             case Exchange::cancelled: return false;
             case Exchange::disagreed:

@@ -136,7 +136,7 @@ private:
     void add_traction(const GivenTraction& given, double time);
     void add_pond(const Facet& facet, std::span<const double> pressure);
 
-    std::vector<double> softness_;             // per soil, 1/Pa: the fixed-stress split's, where nothing yields
+    std::vector<double> softness_;             // per soil, 1/Pa: the fixed-stress split's
     std::vector<double> projection_softness_;  // per soil, 1/Pa: the pressure projection's
     std::vector<GivenDisplacement> given_displacements_;
     std::vector<GivenTraction> given_tractions_;
@@ -150,7 +150,6 @@ private:
     std::vector<double> found_volume_;  // per portion, m3, as the skeleton found it
     std::vector<double> correction_;    // per portion, Pa: of what is expected of the skeleton
     Anderson acceleration_{0};
-    std::vector<double> elastic_softness_;  // per portion, m3/Pa
     double disagreement_ = 0;  // largest difference of the two's pore volumes, over the one that is let stand
     std::vector<double> point_pore_stress_, point_density_, node_force_, prescribed_displacement_;
     std::vector<ShearStrength> point_strength_;

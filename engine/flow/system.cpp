@@ -7,17 +7,16 @@
 namespace talus {
 namespace {
 
-// Of `capacity` times the pressure's change, the table's own or larger.
-double moved_by_saturation(const HydraulicTable& table, double pressure, double change, double capacity) {
+// `here` is the state at the pressure, whose capacity may be larger than the curve's.
+double moved_by_saturation(const HydraulicTable& table, double pressure, double change, const HydraulicState& here) {
     const double turn = table.switch_pressure();
     const HydraulicState at_turn = table.at(turn);
     if (at_turn.capacity <= 0) return pressure + change;
-    const double here = table.at(pressure).saturation;
     const double target = pressure >= turn ? at_turn.saturation + at_turn.capacity * (pressure + change - turn)
-                                           : here + capacity * change;
+                                           : here.saturation + here.capacity * change;
     if (target >= at_turn.saturation) return turn + (target - at_turn.saturation) / at_turn.capacity;
     constexpr double largest_loss = 0.9;  // of what is above the residual saturation
-    const double mobile = std::min(here, at_turn.saturation) - table.residual_saturation();
+    const double mobile = std::min(here.saturation, at_turn.saturation) - table.residual_saturation();
     const double least = table.residual_saturation() + (1.0 - largest_loss) * mobile;
     return table.pressure_of_saturation(std::max(target, least));
 }
@@ -136,7 +135,7 @@ void FlowSystem::evaluate_deforming(double t, std::span<const double> pressure) 
         const HydraulicState& here = state_[i];
         const Retention& retention = scene_.soils[static_cast<size_t>(network.portions[i].soil)].hydraulics.retention;
         const double range = retention.maximum_saturation - retention.residual_saturation;
-        const double effective = (here.saturation - retention.residual_saturation) / range;
+        const double effective = effective_of_saturation(retention, here.saturation);
         effective_saturation_[i] = effective;
         effective_saturation_slope_[i] = here.capacity / range;
         pore_stress_[i] = bishop ? effective * p : std::max(p, 0.0);
@@ -364,12 +363,12 @@ double FlowSystem::moved(size_t node, double pressure, double change) const {
     constexpr double straight = 1e-3;  // the curves are so over this share of the suction
     if (pressure >= turn && pressure + change >= turn) return pressure + change;
     if (std::abs(change) < straight * std::abs(pressure)) return pressure + change;
-    const HydraulicState here = table.at(pressure);
+    HydraulicState here = table.at(pressure);
     const double yielding = here.saturation / scene_.water.bulk_modulus;
-    if (pressure >= turn || here.capacity > yielding)
-        return moved_by_saturation(table, pressure, change, here.capacity);
+    if (pressure >= turn || here.capacity > yielding) return moved_by_saturation(table, pressure, change, here);
     if (change < 0) return pressure + change;
-    return std::min(pressure + change, moved_by_saturation(table, pressure, change, here.capacity + yielding));
+    here.capacity += yielding;
+    return std::min(pressure + change, moved_by_saturation(table, pressure, change, here));
 }
 
 double FlowSystem::moved_steadily(size_t node, double pressure, double change) const {
@@ -383,8 +382,7 @@ double FlowSystem::moved_steadily(size_t node, double pressure, double change) c
 double FlowSystem::pore_stress(size_t soil, double pressure) const {
     if (scene_.physics.stress == StressMeasure::net) return std::max(pressure, 0.0);
     const Retention& retention = scene_.soils[soil].hydraulics.retention;
-    const double mobile = tables_[soil].at(pressure).saturation - retention.residual_saturation;
-    return mobile / (retention.maximum_saturation - retention.residual_saturation) * pressure;
+    return effective_of_saturation(retention, tables_[soil].at(pressure).saturation) * pressure;
 }
 
 }  // namespace talus

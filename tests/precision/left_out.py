@@ -4,11 +4,10 @@ import os
 import pathlib
 
 import talus
-from isolated import in_a_process
 from machine import circumstances, text
 from page import number, table
 from rows import Clock, read_scene
-from sweep import WALL_BOUND
+from sweep import in_bounds
 from variants import VARIANTS
 
 SCENE = "slope_gentle"
@@ -51,14 +50,9 @@ def measure_or_say(scene):
         return {"reason": str(error)}
 
 
-def row(variant, scene):
-    outcome, result = in_a_process(WALL_BOUND, measure_or_say, scene)
-    return {"variant": variant, **(result if outcome == "finished" else {"reason": result})}
-
-
 def run():
     scene = read_scene(SCENE)
-    rows = [row(name, change(scene)) for name, change in VARIANTS.items()]
+    rows = [{"variant": name, **in_bounds(measure_or_say, change(scene))} for name, change in VARIANTS.items()]
     return {"scene": SCENE, "hours": HOURS, "rows": rows, **circumstances()}
 
 

@@ -28,8 +28,13 @@ def run(case, coarsening, loosening, even=False):
     default = coarsening == 1 and loosening == 1 and not even
     row = {"case": case, "setting": setting, "default": default, "nodes": None, "errors": None, "wall_s": None, "cpu_s": None,
            "reason": None}
-    outcome, result = in_a_process(WALL_BOUND, measure_or_say, case, scene)
-    return {**row, **(result if outcome == "finished" else {"reason": result})}
+    return {**row, **in_bounds(measure_or_say, case, scene)}
+
+
+def in_bounds(function, *arguments):
+    """The dict that function returns from a process of its own, or the reason why there is none."""
+    outcome, result = in_a_process(WALL_BOUND, function, *arguments)
+    return result if outcome == "finished" else {"reason": result}
 
 
 def measure_or_say(case, scene):

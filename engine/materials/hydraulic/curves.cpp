@@ -55,9 +55,8 @@ double effective_saturation(const Retention& retention, double suction) {
         case RetentionModel::gardner: return std::exp(-retention.alpha * suction);
         case RetentionModel::brooks_corey: return std::min(1.0, std::pow(retention.alpha * suction, -retention.n));
         case RetentionModel::tabulated: {
-            const double dry = retention.residual_saturation;
             const double value = monotone_cubic(retention.suction, retention.saturation, suction);
-            return std::clamp((value - dry) / (retention.maximum_saturation - dry), 0.0, 1.0);
+            return std::clamp(effective_of_saturation(retention, value), 0.0, 1.0);
         }
     }
     return 1.0;

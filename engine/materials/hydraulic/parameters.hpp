@@ -24,6 +24,12 @@ struct Retention {
     std::vector<double> saturation;  ///< -, tabulated only, not increasing
 };
 
+/// S_e: the share of what drains that is held, -.
+inline double effective_of_saturation(const Retention& retention, double saturation) {
+    return (saturation - retention.residual_saturation) /
+           (retention.maximum_saturation - retention.residual_saturation);
+}
+
 enum class PermeabilityModel { mualem, constant, gardner, power, brooks_corey, tabulated };
 
 /// Relative permeability k_r of the water, between 0 and 1.
