@@ -15,7 +15,8 @@ CASES = {
     "terzaghi": terzaghi.rows,
     "mandel": mandel.rows,
     "srivastava_yeh": srivastava_yeh.rows,
-    **{name: functools.partial(engine_cases.rows, name) for name in ("footing_q4", "footing_t3", "patch", "order")},
+    **{name: functools.partial(engine_cases.rows, name)
+       for name in ("footing_q4", "footing_t3", "patch", "order", "elastic_bar", "rotation")},
     "slope_gentle": lambda: slopes.rows("slope_gentle"),
     "slope": lambda: slopes.rows("slope"),
     "slope_triangles": slopes.triangles_rows,

@@ -1,4 +1,5 @@
 // Verification cases that a scene cannot express: the program prints the rows of one of them as JSON, for tests/verify.
+#include "verification/explicit_cases.hpp"
 #include "verification/flow_cases.hpp"
 #include "verification/footing.hpp"
 #include "verification/skeleton_cases.hpp"
@@ -106,11 +107,30 @@ void order(Rows& rows) {
              [] { return shortfall(redistribution_error(16), redistribution_error(32)); });
 }
 
+void vibrate(Rows& rows) {
+    for (const size_t cells : {25, 50, 100}) {
+        const std::string resolution = ", " + std::to_string(cells) + " cells";
+        BarErrors errors{};
+        rows.add("energy over 100 periods" + resolution, {"", "rel", 0.01, "kept"}, [&] {
+            errors = vibrate_bar(cells, 0.5, 100);
+            return errors.energy;
+        });
+        rows.add("period" + resolution, {"", "rel", 0.005, "4 L / c"}, [&] { return errors.period; });
+    }
+}
+
+void fly(Rows& rows) {
+    FlightErrors errors{};
+    rows.add("linear momentum, a step of 10,000", {"", "rel", 1e-12, "kept"}, [&] {
+        errors = fly_block(10000);
+        return errors.linear;
+    });
+    rows.add("angular momentum, a step of 10,000", {"", "rel", 1e-12, "kept"}, [&] { return errors.angular; });
+}
+
 const std::map<std::string, void (*)(Rows&)> cases{
-    {"footing_q4", press_quads},
-    {"footing_t3", press_triangles},
-    {"patch", patch},
-    {"order", order},
+    {"elastic_bar", vibrate},        {"rotation", fly}, {"footing_q4", press_quads},
+    {"footing_t3", press_triangles}, {"patch", patch},  {"order", order},
 };
 
 }  // namespace

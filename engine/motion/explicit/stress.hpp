@@ -1,0 +1,48 @@
+// The stress of a block of points under a step's strain.
+#pragma once
+
+#include "background/grid.hpp"
+#include "materials/solid/mohr_coulomb.hpp"
+#include "motion/explicit/transfer.hpp"
+#include "points/free_points.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace talus {
+
+/// How a soil deforms, yields and softens. Its strength falls in proportion to the slip on a shear band, sqrt(3) times the plastic shear
+/// strain times the cell's size: the band is as wide as the cells allow, and what it dissipates does not depend on them
+/// (Pietruszczak & Mroz, Int. J. Numer. Methods Eng. 17, 1981).
+struct ExplicitSoil {
+    Elasticity elastic{};
+    bool yields = false;
+    MohrCoulomb strength{};            ///< without slip
+    double residual_cohesion = 0;      ///< Pa, after softening_slip
+    double residual_sin_friction = 0;  ///< -, likewise
+    double softening_slip = 0;         ///< m; 0: it does not soften
+};
+
+// The arrays that these take never overlap, which __restrict tells the compiler, so that the loops are vectorised.
+
+/// What the law of each point of a block says, at the point's slip.
+struct MaterialBlock {
+    BlockValues lame, shear;                                                           // Pa
+    BlockValues cohesion, sin_friction, cos_friction, sin_dilation, tensile_strength;  // as in MohrCoulomb
+    std::array<int64_t, block_size> unfinished;  // whether a stress needs more than the return to the main plane
+};
+
+void set_elasticity(const std::vector<ExplicitSoil>& soils, const FreePoints& points, size_t first, size_t count,
+                    MaterialBlock& block);
+void set_strength(const std::vector<ExplicitSoil>& soils, const FreePoints& points, size_t first, size_t count,
+                  double cell_size, MaterialBlock& block);
+
+/// Hooke's law on the stress turned by the step's rotation (Hughes & Winget 1980), and the change of volume, in dt (s).
+void strain_elastically(FreePoints& points, size_t first, size_t count, double dt, const GradientBlock& gradient,
+                        const MaterialBlock& block);
+
+/// Returns stresses that violate Mohr-Coulomb to its surface.
+void return_stresses(FreePoints& points, size_t first, size_t count, MaterialBlock& block);
+
+}  // namespace talus

@@ -1,0 +1,181 @@
+// Between a block of points and the nodes of the Cartesian background.
+//
+// Nodes are handled as registers of two or four numbers; points of one cell follow each other, so that its nodes stay in registers.
+#pragma once
+
+#include "background/grid.hpp"
+#include "motion/explicit/grid_motion.hpp"
+#include "points/free_points.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace talus {
+
+using Pair = Eigen::Array2d;
+using Quad = Eigen::Array4d;
+
+/// The nine nodes that a point sees, held while points of the same cell follow each other.
+template <class Value, bool writes>
+class NodePatch {
+public:
+    using Number = std::conditional_t<writes, double, const double>;
+
+    NodePatch(Number* values, const Grid& grid, int32_t first)
+        : values_(values), stride_(static_cast<size_t>(grid.cells[0])), first_(first) {
+        get();
+    }
+    ~NodePatch() { put(); }
+    NodePatch(const NodePatch&) = delete;
+    NodePatch& operator=(const NodePatch&) = delete;
+
+    void move_to(int32_t first) {
+        if (first == first_) return;
+        put();
+        first_ = first;
+        get();
+    }
+
+    Value node[3][3];
+
+private:
+    auto map(size_t j, size_t i) {
+        return Eigen::Map<std::conditional_t<writes, Value, const Value>>(
+            values_ + Value::SizeAtCompileTime * (static_cast<size_t>(first_) + j * stride_ + i));
+    }
+    void get() {
+        for (size_t j = 0; j < 3; ++j)
+            for (size_t i = 0; i < 3; ++i) node[j][i] = map(j, i);
+    }
+    void put() {
+        if constexpr (writes) {
+            for (size_t j = 0; j < 3; ++j)
+                for (size_t i = 0; i < 3; ++i) map(j, i) = node[j][i];
+        }
+    }
+
+    Number* values_;
+    size_t stride_;
+    int32_t first_;
+};
+
+/// Gradient of a velocity at points, d v_x / d x, d v_x / d y, ..., 1/s.
+struct GradientBlock {
+    BlockValues xx, xy, yx, yy;
+};
+
+inline void gather_gradient(const Grid& grid, const std::vector<NodeVector>& velocity, size_t count,
+                            const SplineBlock& spline, GradientBlock& gradient) {
+    NodePatch<Pair, false> patch(&velocity.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        Pair along_x = Pair::Zero(), along_y = Pair::Zero();
+        for (size_t j = 0; j < 3; ++j) {
+            const Pair &v0 = patch.node[j][0], &v1 = patch.node[j][1], &v2 = patch.node[j][2];
+            along_x += spline.value_y[j][k] *
+                       (spline.slope_x[0][k] * v0 + spline.slope_x[1][k] * v1 + spline.slope_x[2][k] * v2);
+            along_y += spline.slope_y[j][k] *
+                       (spline.value_x[0][k] * v0 + spline.value_x[1][k] * v1 + spline.value_x[2][k] * v2);
+        }
+        gradient.xx[k] = along_x[0];
+        gradient.yx[k] = along_x[1];
+        gradient.xy[k] = along_y[0];
+        gradient.yy[k] = along_y[1];
+    }
+}
+
+/// Forces that balance a stress of the points: -integral of grad N . stress.
+inline void scatter_force(const Grid& grid, size_t count, const SplineBlock& spline, const double* volume,
+                          const double* xx, const double* yy, const double* xy, std::vector<NodeVector>& force) {
+    NodePatch<Pair, true> patch(&force.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        const Pair on_x = -volume[k] * Pair(xx[k], xy[k]), on_y = -volume[k] * Pair(xy[k], yy[k]);
+        for (size_t j = 0; j < 3; ++j) {
+            const Pair by_slope = spline.value_y[j][k] * on_x, by_value = spline.slope_y[j][k] * on_y;
+            for (size_t i = 0; i < 3; ++i)
+                patch.node[j][i] += spline.slope_x[i][k] * by_slope + spline.value_x[i][k] * by_value;
+        }
+    }
+}
+
+/// What a point gives to the nodes: momentum and mass, and the momentum's change along x and y over one cell. Numbers are written alone
+/// and read by fours, a block later: sooner, the processor would wait for them.
+struct Gift {
+    void set(double mass, const Pair& velocity, const Pair& change_x, const Pair& change_y) {
+        own.head<2>() = mass * velocity;
+        own[2] = mass;
+        along_x.head<2>() = mass * change_x;
+        along_y.head<2>() = mass * change_y;
+    }
+    Quad own = Quad::Zero(), along_x = Quad::Zero(), along_y = Quad::Zero();
+};
+using GiftBlock = std::array<Gift, block_size>;
+
+/// The velocity of points, and its change over one cell about them.
+struct VelocityBlock {
+    BlockValues x, y;
+};
+
+/// Takes velocity and its affine part from the nodes (Jiang et al. 2015, ACM Trans. Graph. 34), as the gift that the points will give back.
+/// The points themselves keep it where `keeps`; `x` and `affine` are the first of its two and four fields.
+template <bool keeps>
+void take_velocity(const Grid& grid, const std::vector<NodeVector>& velocity, FreePoints& points, size_t first,
+                   size_t count, const SplineBlock& spline, const double* mass, PointField x, PointField affine,
+                   GiftBlock& gift, VelocityBlock& taken) {
+    constexpr double inverse_moment = 4;  // of the splines' second moment, in cells
+    const double per_metre = 1 / grid.cell_size;
+    NodePatch<Pair, false> patch(&velocity.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        Pair mean = Pair::Zero(), along_x = Pair::Zero(), along_y = Pair::Zero();
+        for (size_t j = 0; j < 3; ++j) {
+            const Pair v0 = spline.value_x[0][k] * patch.node[j][0], v1 = spline.value_x[1][k] * patch.node[j][1],
+                       v2 = spline.value_x[2][k] * patch.node[j][2];
+            const Pair sum = spline.value_y[j][k] * (v0 + v1 + v2);
+            mean += sum;
+            along_x += spline.value_y[j][k] * (v2 - v0);
+            if (j == 0) along_y -= sum;
+            if (j == 2) along_y += sum;
+        }
+        along_x = inverse_moment * (along_x - spline.offset_x[k] * mean);
+        along_y = inverse_moment * (along_y - spline.offset_y[k] * mean);
+        gift[k].set(mass[k], mean, along_x, along_y);
+        taken.x[k] = mean[0];
+        taken.y[k] = mean[1];
+        if constexpr (keeps) {
+            const size_t p = first + k;
+            points.field[x][p] = mean[0];
+            points.field[x + 1][p] = mean[1];
+            points.field[affine][p] = per_metre * along_x[0];
+            points.field[affine + 1][p] = per_metre * along_y[0];
+            points.field[affine + 2][p] = per_metre * along_x[1];
+            points.field[affine + 3][p] = per_metre * along_y[1];
+        }
+    }
+}
+
+/// Gives mass and momentum, the affine part's too, to the nodes about the points' places.
+inline void give_momentum(const Grid& grid, size_t count, const SplineBlock& spline, const GiftBlock& gift,
+                          std::vector<NodeMomentum>& momentum) {
+    NodePatch<Quad, true> patch(&momentum.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        const Quad &along_x = gift[k].along_x, &along_y = gift[k].along_y;
+        // the momentum at the middle node of the lowest row, and its change from node to node
+        Quad middle = gift[k].own - spline.offset_x[k] * along_x - (spline.offset_y[k] + 1) * along_y;
+        for (size_t j = 0; j < 3; ++j) {
+            const Quad share = spline.value_y[j][k] * middle, change = spline.value_y[j][k] * along_x;
+            patch.node[j][0] += spline.value_x[0][k] * (share - change);
+            patch.node[j][1] += spline.value_x[1][k] * share;
+            patch.node[j][2] += spline.value_x[2][k] * (share + change);
+            middle += along_y;
+        }
+    }
+}
+
+}  // namespace talus

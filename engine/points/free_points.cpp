@@ -1,0 +1,28 @@
+#include "points/free_points.hpp"
+
+namespace talus {
+namespace {
+
+template <class Value>
+void arrange_field(std::vector<Value>& field, std::vector<Value>& old, const std::vector<int32_t>& order) {
+    if (field.empty()) return;
+    old.swap(field);
+    field.resize(order.size());
+    for (size_t k = 0; k < order.size(); ++k) field[k] = old[static_cast<size_t>(order[k])];
+}
+
+}  // namespace
+
+size_t FreePoints::bytes_a_point() const {
+    size_t bytes = sizeof(int32_t) * ((soil.empty() ? 0 : 1) + (number.empty() ? 0 : 1));
+    for (const auto& values : field) bytes += values.empty() ? 0 : sizeof(double);
+    return bytes;
+}
+
+void FreePoints::arrange(const std::vector<int32_t>& order) {
+    for (auto& values : field) arrange_field(values, old_values_, order);
+    arrange_field(soil, old_numbers_, order);
+    arrange_field(number, old_numbers_, order);
+}
+
+}  // namespace talus

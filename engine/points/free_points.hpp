@@ -1,0 +1,52 @@
+// Material points that move through a Cartesian background. Structure of arrays; a field that the scene's physics does not name
+// stays empty.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace talus {
+
+/// Tensors are tension positive.
+enum PointField : size_t {
+    position_x,  ///< m
+    position_y,
+    velocity_x,  ///< of the solid, m/s
+    velocity_y,
+    affine_xx,  ///< velocity's own gradient about the point, which the transfer keeps (Jiang et al. 2015), 1/s
+    affine_xy,
+    affine_yx,
+    affine_yy,
+    stress_xx,  ///< net (or effective) stress, Pa
+    stress_yy,
+    stress_zz,
+    stress_xy,
+    point_volume,  ///< m3 per metre of thickness
+    solid_mass,    ///< kg per metre of thickness
+    plastic_shear_strain,
+    point_fields
+};
+
+struct FreePoints {
+    size_t count = 0;
+    std::array<std::vector<double>, point_fields> field;
+    std::vector<int32_t> soil;    ///< index into Scene::soils
+    std::vector<int32_t> number;  ///< the point's own, kept when points are arranged anew
+
+    double* operator[](PointField name) { return field[name].data(); }
+    const double* operator[](PointField name) const { return field[name].data(); }
+
+    /// Bytes that one point holds.
+    [[nodiscard]] size_t bytes_a_point() const;
+
+    /// Puts the points into the given order: the one now at order[k] comes to k.
+    void arrange(const std::vector<int32_t>& order);
+
+private:
+    std::vector<double> old_values_;
+    std::vector<int32_t> old_numbers_;
+};
+
+}  // namespace talus

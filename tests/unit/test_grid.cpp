@@ -1,0 +1,89 @@
+// The Cartesian background's splines, and points that move through it.
+#include "background/grid.hpp"
+#include "doctest/doctest.h"
+#include "verification/explicit_cases.hpp"
+
+#include <cmath>
+
+using namespace talus;
+using namespace talus::test;
+
+TEST_CASE("splines of the grid add up to one and reproduce places") {
+    const Grid grid{0.25, {-1, 2}, {12, 9}};
+    const std::array<double, 3> x{-0.74, 0.5, 1.2499}, y{2.251, 2.75, 3.9};
+    SplineBlock spline;
+    spline.find(grid, x.data(), y.data(), x.size());
+    for (size_t k = 0; k < x.size(); ++k) {
+        double one = 0, place_x = 0, place_y = 0, slope_x = 0, slope_y = 0;
+        for (size_t j = 0; j < 3; ++j) {
+            for (size_t i = 0; i < 3; ++i) {
+                const auto node = static_cast<size_t>(spline.first[k]) + j * 12 + i;
+                const double share = spline.value_x[i][k] * spline.value_y[j][k];
+                one += share;
+                place_x += share * (-1 + 0.25 * (static_cast<double>(node % 12) + 0.5));
+                place_y += share * (2 + 0.25 * (static_cast<double>(node / 12) + 0.5));
+                slope_x += spline.slope_x[i][k] * (0.25 * static_cast<double>(i));
+                slope_y += spline.slope_y[j][k] * (0.25 * static_cast<double>(j));
+            }
+        }
+        CHECK(one == doctest::Approx(1).epsilon(1e-14));
+        CHECK(place_x == doctest::Approx(x[k]).epsilon(1e-13));
+        CHECK(place_y == doctest::Approx(y[k]).epsilon(1e-13));
+        CHECK(slope_x / 3 == doctest::Approx(1).epsilon(1e-13));
+        CHECK(slope_y / 3 == doctest::Approx(1).epsilon(1e-13));
+    }
+}
+
+namespace {
+
+/// A block that falls onto a fixed base, slides off a frictional one, or hits a roller, for a while.
+FreePoints fall(const Walls& walls, int32_t threads, int64_t steps) {
+    const double cell_size = 0.05;
+    FreePoints points = block_of_points(cell_size, 0.5, 0.02, 20, 20);
+    for (size_t p = 0; p < points.count; ++p) points[velocity_x][p] = 1;
+    ExplicitSoil soil{elasticity(1e6, 0.3), true, mohr_coulomb({100, 30}, 0, 1e300)};
+    ExplicitMotion motion(cell_size, walls, 9.81, {soil}, std::move(points), threads);
+    for (int64_t step = 1; step <= steps; ++step) motion.step(motion.critical_step(), step == steps);
+    return motion.points();
+}
+
+}  // namespace
+
+TEST_CASE("explicit motion gives the same bits with one and two threads, and keeps every point") {
+    const Walls walls{{}, {WallKind::roller, 3, 0}, {WallKind::friction, 0, 0.3}};
+    const FreePoints one = fall(walls, 1, 400), two = fall(walls, 2, 400);
+    for (size_t f = 0; f < point_fields; ++f) CHECK(one.field[f] == two.field[f]);
+    CHECK(one.number == two.number);
+    std::vector<int32_t> numbers = one.number;
+    std::sort(numbers.begin(), numbers.end());
+    for (size_t p = 0; p < one.count; ++p) CHECK(numbers[p] == static_cast<int32_t>(p));
+}
+
+TEST_CASE("walls hold the points") {
+    const Walls walls{{}, {WallKind::roller, 1.8, 0}, {WallKind::friction, 0, 0.3}};
+    const FreePoints points = fall(walls, 1, 3000);
+    for (size_t p = 0; p < points.count; ++p) {
+        CHECK(points[position_y][p] > 0);
+        CHECK(points[position_x][p] < 1.8);
+    }
+}
+
+TEST_CASE("friction slows a block as Coulomb has it") {
+    // Sliding with the friction coefficient 0.3 takes 0.3 g off the speed.
+    const double cell_size = 0.1, dt = 1e-3;
+    FreePoints points = block_of_points(cell_size, 0, 0, 10, 2);
+    for (size_t p = 0; p < points.count; ++p) {
+        points[velocity_x][p] = 2;
+        points[stress_yy][p] = -block_density * 9.81 * (0.2 - points[position_y][p]);
+    }
+    ExplicitMotion motion(cell_size, {{}, {}, {WallKind::friction, 0, 0.3}}, 9.81, {{elasticity(1e6, 0)}},
+                          std::move(points), 1);
+    const auto steps = static_cast<int64_t>(0.4 / dt);
+    for (int64_t step = 1; step <= steps; ++step) motion.step(dt, step == steps);
+    double momentum = 0, mass = 0;
+    for (size_t p = 0; p < motion.points().count; ++p) {
+        momentum += motion.points()[solid_mass][p] * motion.points()[velocity_x][p];
+        mass += motion.points()[solid_mass][p];
+    }
+    CHECK(momentum / mass == doctest::Approx(2 - 0.3 * 9.81 * 0.4).epsilon(0.01));
+}

@@ -1,0 +1,134 @@
+// Explicit motion of blocks of material points on the Cartesian background.
+#pragma once
+
+#include "motion/explicit/explicit_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace talus::test {
+
+inline constexpr double block_density = 2000;  // kg/m3
+
+/// A rectangle of points at rest, two a cell and direction, with its lower left corner at (x, y).
+inline FreePoints block_of_points(double cell_size, double x, double y, size_t columns, size_t rows) {
+    FreePoints points;
+    points.count = 4 * columns * rows;
+    for (auto& values : points.field) values.assign(points.count, 0.0);
+    points.soil.assign(points.count, 0);
+    points.number.resize(points.count);
+    const double spacing = cell_size / 2;
+    for (size_t p = 0; p < points.count; ++p) {
+        points.number[p] = static_cast<int32_t>(p);
+        points[position_x][p] = x + (static_cast<double>(p % (2 * columns)) + 0.5) * spacing;
+        points[position_y][p] = y + (static_cast<double>(p / (2 * columns)) + 0.5) * spacing;
+        points[point_volume][p] = spacing * spacing;
+        points[solid_mass][p] = block_density * spacing * spacing;
+    }
+    return points;
+}
+
+struct BarErrors {
+    double energy;  ///< largest change of the mean energy over a period, relative
+    double period;  ///< of the mean of all periods, relative
+};
+
+/// The first longitudinal vibration of a bar, fixed at its lower end and free at its upper one, between rollers; undamped.
+inline BarErrors vibrate_bar(size_t cells, double courant, double periods) {
+    constexpr double pi = std::numbers::pi;
+    const Elasticity elastic = elasticity(1e7, 0.3);
+    const double stiffness = elastic.lame + 2 * elastic.shear;
+    const double wave = std::sqrt(stiffness / block_density);
+    const double cell_size = 1.0 / static_cast<double>(cells), period = 4 / wave;
+    FreePoints points = block_of_points(cell_size, 0, 0, 1, cells);
+    for (size_t p = 0; p < points.count; ++p) {
+        const double place = pi / 2 * points[position_y][p];
+        points[velocity_y][p] = 1e-4 * wave * std::sin(place);
+        points[affine_yy][p] = 1e-4 * wave * pi / 2 * std::cos(place);
+    }
+    const Walls walls{{WallKind::roller, 0, 0}, {WallKind::roller, cell_size, 0}, {WallKind::roller, 0, 0}};
+    ExplicitMotion bar(cell_size, walls, 0, {{elastic}}, std::move(points), 1);
+    const auto steps_a_period = static_cast<int64_t>(std::ceil(period * wave / (courant * cell_size)));
+    const double dt = period / static_cast<double>(steps_a_period);
+    const auto momentum = [&bar] {
+        double sum = 0;
+        for (size_t p = 0; p < bar.points().count; ++p)
+            sum += bar.points()[solid_mass][p] * bar.points()[velocity_y][p];
+        return sum;
+    };
+    double first_energy = 0, energy = 0, last_momentum = momentum(), first_crossing = -1, last_crossing = -1;
+    int64_t crossings = -1;
+    BarErrors errors{0, 0};
+    const auto steps = static_cast<int64_t>(periods) * steps_a_period;
+    for (int64_t step = 1; step <= steps; ++step) {
+        bar.step(dt, true);
+        const Energies now = bar.energies();
+        energy += (now.kinetic + now.elastic) / static_cast<double>(steps_a_period);
+        if (step % steps_a_period == 0) {
+            if (first_energy == 0) first_energy = energy;
+            errors.energy = std::max(errors.energy, std::abs(energy / first_energy - 1));
+            energy = 0;
+        }
+        const double present = momentum();
+        if (last_momentum <= 0 && present > 0) {
+            last_crossing = (static_cast<double>(step) - present / (present - last_momentum)) * dt;
+            if (crossings < 0) first_crossing = last_crossing;
+            ++crossings;
+        }
+        last_momentum = present;
+    }
+    errors.period = std::abs((last_crossing - first_crossing) / static_cast<double>(crossings) / period - 1);
+    return errors;
+}
+
+struct Momentum {
+    double x = 0, y = 0;  ///< kg m/s
+    double angular = 0;   ///< about the origin, the affine parts' too, kg m2/s
+};
+
+inline Momentum momentum_of(const FreePoints& points, double cell_size) {
+    Momentum sum;
+    const double second_moment = cell_size * cell_size / 4;  // of the quadratic splines
+    for (size_t p = 0; p < points.count; ++p) {
+        const double mass = points[solid_mass][p];
+        sum.x += mass * points[velocity_x][p];
+        sum.y += mass * points[velocity_y][p];
+        sum.angular +=
+            mass * (points[position_x][p] * points[velocity_y][p] - points[position_y][p] * points[velocity_x][p] +
+                    second_moment * (points[affine_yx][p] - points[affine_xy][p]));
+    }
+    return sum;
+}
+
+struct FlightErrors {
+    double linear, angular;  ///< largest change in a step beside the weight's, over the momentum
+};
+
+/// A block that spins about its centre and flies, without weight (its angular momentum is then the same about any place).
+inline FlightErrors fly_block(int64_t steps) {
+    constexpr double cell_size = 0.1, spin = 5, speed_x = 3, speed_y = 2;
+    FreePoints points = block_of_points(cell_size, -0.4, -0.2, 8, 4);
+    for (size_t p = 0; p < points.count; ++p) {
+        points[velocity_x][p] = speed_x - spin * points[position_y][p];
+        points[velocity_y][p] = speed_y + spin * points[position_x][p];
+        points[affine_xy][p] = -spin;
+        points[affine_yx][p] = spin;
+    }
+    ExplicitMotion block(cell_size, {}, 0, {{elasticity(1e6, 0.3)}}, std::move(points), 1);
+    const double dt = block.critical_step();
+    Momentum last = momentum_of(block.points(), cell_size);
+    const double linear = std::hypot(last.x, last.y), angular = std::abs(last.angular);
+    FlightErrors errors{0, 0};
+    for (int64_t step = 0; step < steps; ++step) {
+        block.step(dt, true);
+        const Momentum now = momentum_of(block.points(), cell_size);
+        errors.linear = std::max(errors.linear, std::hypot(now.x - last.x, now.y - last.y) / linear);
+        errors.angular = std::max(errors.angular, std::abs(now.angular - last.angular) / angular);
+        last = now;
+    }
+    return errors;
+}
+
+}  // namespace talus::test
