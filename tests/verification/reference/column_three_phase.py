@@ -267,11 +267,11 @@ def check():
 
 def long():
     column = Column(100)
-    times = (600.0, 1200.0, 1800.0, 3600.0, 7200.0)
+    times = (600.0, 900.0, 1200.0, 1300.0, 1400.0, 1500.0, 1600.0, 1800.0, 7200.0)
     for time, x in zip(times, simulate(column, times, 1e-5, largest_step=60.0)):
         infiltrated, escaped = balance(column, x)
-        print(f"  t={time:.0f}: infiltrated {infiltrated:.3f} of 60 mm, air escaped {escaped:.3f} mm, least S {column.saturation(x).min():.5f}, "
-              f"p_g base {x[0, 1]:.0f} Pa, p_l base {x[0, 0]:.0f} Pa")
+        print(f"  t={time:.0f}: infiltrated {infiltrated:.3f} of 60 mm, air escaped {escaped:.3f} mm, "
+              f"least S {column.saturation(x).min():.5f}, at the base p_g {x[0, 1]:.0f} Pa, p_l {x[0, 0]:.0f} Pa")
 
 
 def main():
