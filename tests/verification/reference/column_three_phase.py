@@ -223,14 +223,14 @@ def balance(column, x):
 
 
 def write(name, column, answers):
-    y = np.arange(401) * 0.0025
+    y = np.concatenate([np.arange(392) * 0.0025, 0.98 + np.arange(33) * 0.000625])  # finer where p_g goes with the root of depth
     with open(name, "w") as file:
         file.write("time_s,y_m,water_pressure_Pa,gas_pressure_Pa,saturation,infiltrated_m,air_escaped_m\n")
         for time, x in zip(TIMES, answers):
             water, gas = (np.interp(y, column.y, x[:, fluid]) for fluid in (0, 1))
             infiltrated, escaped = 1e-3 * np.array(balance(column, x))
             for row in zip(y, water, gas, soil.saturation(water - gas)):
-                file.write(f"{time:.0f},{row[0]:.4f},{row[1]:.3f},{row[2]:.3f},{row[3]:.7f},{infiltrated:.8f},{escaped:.8f}\n")
+                file.write(f"{time:.0f},{row[0]:.6f},{row[1]:.3f},{row[2]:.3f},{row[3]:.7f},{infiltrated:.8f},{escaped:.8f}\n")
 
 
 def differences(coarse, fine):
