@@ -33,15 +33,17 @@ struct LiquidGift {
 };
 using LiquidGiftBlock = std::array<LiquidGift, block_size>;
 
-void fill_gifts(size_t count, const double* volume, const double* mass, const BlockValues& pressure,
-                const BlockValues& mobility, LiquidGiftBlock& gift) {
+void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
+                const BlockValues& pressure, const BlockValues& mobility, LiquidGiftBlock& gift) {
     for (size_t k = 0; k < count; ++k) {
-        const double push = volume[k] * pressure[k];
+        const double whole = pressure[k] + unit_weight * y[k];
+        const double push = volume[k] * whole;
         gift[k].along_x[0] = gift[k].along_y[1] = push;
         gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
-        gift[k].value[0] = mass[k] * pressure[k];
+        gift[k].value[0] = mass[k] * whole;
         gift[k].value[1] = mass[k] * mobility[k];
         gift[k].value[2] = volume[k];
+        gift[k].value[3] = mass[k] * y[k];
     }
 }
 
@@ -59,9 +61,22 @@ void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline
     }
 }
 
+void scatter_edge_height(const Grid& grid, size_t count, const SplineBlock& spline, const double* y,
+                         const double* volume, std::vector<NodeVector>& edge_height) {
+    NodePatch<Pair, true> patch(&edge_height.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        const double size = volume[k] * y[k];
+        for (size_t j = 0; j < 3; ++j) {
+            const Pair row(size * spline.value_y[j][k], size * spline.slope_y[j][k]);
+            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += row * Pair(spline.slope_x[i][k], spline.value_x[i][k]);
+        }
+    }
+}
+
 void scatter_means(const Grid& grid, size_t count, const SplineBlock& spline, const LiquidGiftBlock& gift,
                    std::vector<NodeMeans>& means) {
-    NodePatch<Quad, true> patch(&means.data()->pressure, grid, spline.first[0]);
+    NodePatch<Quad, true> patch(&means.data()->push, grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
         for (size_t j = 0; j < 3; ++j) {
@@ -180,8 +195,10 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         const double* volume = points_[point_volume] + first;
         scatter_force(nodes_.grid, count, spline, volume, total_xx.data(), total_yy.data(), points_[stress_xy] + first,
                       nodes_.force);
-        fill_gifts(count, volume, mass, water.pressure, water.mobility, gift);
+        const double* y = points_[position_y] + first;
+        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, water.pressure, water.mobility, gift);
         scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
+        scatter_edge_height(nodes_.grid, count, spline, y, volume, nodes_.edge_height);
         scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
     }
 }
@@ -270,7 +287,7 @@ void ExplicitMixture<filling>::set_rain(double rate) {
 
 template <Filling filling>
 double ExplicitMixture<filling>::critical_step() const {
-    constexpr double share = 0.5;
+    constexpr double share = 1.0;  // stable to 1.4: the bound of the speed is above any wave's
     return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.largest_speed());
 }
 

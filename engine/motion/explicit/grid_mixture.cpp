@@ -30,6 +30,7 @@ void GridMixture::resize() {
     force.assign(nodes, {});
     gradients.assign(nodes, {});
     means.assign(nodes, {});
+    edge_height.assign(nodes, {});
     returned.resize(nodes);
     velocity.resize(nodes);
     liquid_velocity.resize(nodes);
@@ -42,6 +43,7 @@ void GridMixture::begin_step() {
         force[i] = {0, -gravity * (momentum[i].mass + liquid_momentum[i].mass)};
         gradients[i] = {};
         means[i] = {};
+        edge_height[i] = {};
     });
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
         move_in(momentum[nodes.inside], momentum[nodes.beyond], mirror);
@@ -77,7 +79,7 @@ void GridMixture::end_step(double dt) {
 }
 
 void GridMixture::fold_forces() {
-    for_each_node([this](size_t i) { gradients[i].push_y -= gravity * liquid_density * means[i].volume; });
+    for_each_node([this](size_t i) { edge_height[i].y += means[i].volume; });
     for_each_mirror(
         [this](NodePair nodes, const Mirror& mirror) { add(force[nodes.inside], mirror, force[nodes.beyond]); });
     for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
@@ -88,10 +90,13 @@ void GridMixture::fold_forces() {
         in.edge_y += mirror.y * out.edge_y;
         out = {};
         NodeMeans &mean_in = means[nodes.inside], &mean_out = means[nodes.beyond];
-        mean_in.pressure += mean_out.pressure;
+        mean_in.push += mean_out.push;
+        mean_in.height += mean_out.height;
         mean_in.mobility += mean_out.mobility;
         mean_in.volume += mean_out.volume;
         mean_out = {};
+        add(edge_height[nodes.inside], mirror, edge_height[nodes.beyond]);
+        edge_height[nodes.beyond] = {};
     });
 }
 
@@ -123,34 +128,35 @@ void GridMixture::solve(size_t node, double dt) {
     flux[node] = {};
     returned[node] = 0;
     if (!(mass > 0) || !(mean.volume > 0)) return;
-    const double pressure = mean.pressure / mass;
+    const double unit_weight = gravity * liquid_density;
+    const double push = mean.push / mass, pressure = push - unit_weight * mean.height / mass;
     const double liquid_content = liquid_mass / (liquid_density * mean.volume);
     const double drag = dt * liquid_content * mass / (mean.mobility * liquid_density);
     const double response = dt / (liquid_density * mean.volume);
     const double moved = liquid_mass / (1 + drag), coupled = mass + moved * drag;
     NodeVector &solid = velocity[node], &liquid = liquid_velocity[node];
     const NodeVector start = solid, liquid_start = liquid;
-    const auto move = [&](double held_pressure, double NodeVector::*c, double pushed, double normal) {
-        const double alone = liquid_start.*c + response * (pushed - held_pressure * normal);
+    const auto move = [&](double NodeVector::*c, double pushed, double normal) {
+        const double alone = liquid_start.*c + response * pushed;
         const double whole =
             mass * start.*c + liquid_mass * liquid_start.*c + dt * (force[node].*c - edge_pressure * normal);
         solid.*c = (whole - moved * alone) / coupled;
         liquid.*c = (alone + drag * solid.*c) / (1 + drag);
         flux[node].*c = liquid_mass / mean.volume * (liquid.*c - solid.*c);
     };
-    const auto leaving = [&](double held_pressure) {
-        move(held_pressure, &NodeVector::x, sums.push_x, sums.edge_x);
-        move(held_pressure, &NodeVector::y, sums.push_y, sums.edge_y);
+    const auto leaving = [&](const NodeVector& held) {
+        move(&NodeVector::x, sums.push_x - held.x, sums.edge_x);
+        move(&NodeVector::y, sums.push_y - held.y, sums.edge_y);
         return flux[node].x * sums.edge_x + flux[node].y * sums.edge_y;
     };
     if ((immersed || pressure > 0) && is_at_edge(node)) {
-        const double rate = leaving(0);
+        const double rate = leaving({unit_weight * edge_height[node].x, unit_weight * edge_height[node].y});
         if (immersed || rate >= 0) {
             seeping += dt * rate;
             return;
         }
     }
-    returned[node] = leaving(pressure);
+    returned[node] = leaving({push * sums.edge_x, push * sums.edge_y});
 }
 
 /// Beyond a wall the nodes move as the mirrored ground would; water slides along every wall.
