@@ -4,6 +4,7 @@ import functools
 
 import column
 import engine_cases
+import explicit_motion
 import mandel
 import slopes
 import srivastava_yeh
@@ -17,6 +18,9 @@ CASES = {
     "srivastava_yeh": srivastava_yeh.rows,
     **{name: functools.partial(engine_cases.rows, name)
        for name in ("footing_q4", "footing_t3", "patch", "order", "elastic_bar", "rotation")},
+    "saturated_wave": explicit_motion.saturated_wave_rows,
+    "wave_speeds": explicit_motion.standing_wave_rows,
+    "column_explicit": explicit_motion.column_rows,
     "slope_gentle": lambda: slopes.rows("slope_gentle"),
     "slope": lambda: slopes.rows("slope"),
     "slope_triangles": slopes.triangles_rows,
