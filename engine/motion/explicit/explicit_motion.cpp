@@ -25,12 +25,20 @@ ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double grav
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
     nodes_.gravity = gravity;
-    nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
+    nodes_.least_mass =
+        points_.count > 0 ? *std::min_element(points_[solid_mass], points_[solid_mass] + points_.count) : 0;
     for (size_t p = 0; p < points_.count; ++p) {
         const Elasticity& elastic = soils_[static_cast<size_t>(points_.soil[p])].elastic;
         const double density = points_[solid_mass][p] / points_[point_volume][p];
         wave_speed_ = std::max(wave_speed_, std::sqrt((elastic.lame + 2 * elastic.shear) / density));
     }
+    restart();
+}
+
+void ExplicitMotion::restart() {
+    const Walls& walls = nodes_.walls;
+    nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
+    nodes_.grid.cells = {};
     arrange_points();
     for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
@@ -49,10 +57,11 @@ void ExplicitMotion::for_each_strip(const Handle& handle) {
     }
 }
 
-void ExplicitMotion::step(double dt, bool is_last) {
+bool ExplicitMotion::step(double dt, bool is_last) {
     for_each_strip([&](Strip strip) { stress_and_forces(strip, dt); });
     nodes_.end_step(dt);
-    const double drift = dt * nodes_.largest_speed() / nodes_.grid.cell_size;
+    const double drift = dt * nodes_.speed / nodes_.grid.cell_size;
+    if (!(drift <= margin)) return false;
     if (drift_ + drift > margin) arrange_points();
     drift_ += drift;
     for_each_strip([&](Strip strip) {
@@ -63,6 +72,7 @@ void ExplicitMotion::step(double dt, bool is_last) {
         }
     });
     nodes_.begin_step();
+    return true;
 }
 
 void ExplicitMotion::stress_and_forces(Strip strip, double dt) {
@@ -105,7 +115,7 @@ void ExplicitMotion::move_and_give(Strip strip, double dt) {
     }
 }
 
-/// The momenta of points that have a velocity of their own: at the start.
+/// The momenta of points that have a velocity of their own.
 void ExplicitMotion::give(Strip strip) {
     SplineBlock spline;
     GiftBlock gift;

@@ -34,8 +34,12 @@ public:
                    FreePoints points, int32_t threads);
 
     /// Carries the points dt (s) on; dt is at most critical_step(). Where this is not the last of several steps, the points' velocity
-    /// is left to the nodes.
-    void step(double dt, bool is_last);
+    /// is left to the nodes. False: a velocity is no number, or carries a point across several cells, and the points were not moved.
+    bool step(double dt, bool is_last);
+
+    /// Makes all that the nodes hold from the points alone, whose velocity must be their own. What follows depends on nothing else, to
+    /// the last bit: points put back move as those that they are a copy of.
+    void restart();
 
     /// The time in which a wave crosses a cell that moves with the fastest node, times what the method bears of it, s.
     [[nodiscard]] double critical_step() const;
