@@ -3,6 +3,7 @@
 import functools
 
 import column
+import dynamic_slides
 import engine_cases
 import mandel
 import slopes
@@ -17,6 +18,7 @@ CASES = {
     "srivastava_yeh": srivastava_yeh.rows,
     **{name: functools.partial(engine_cases.rows, name)
        for name in ("footing_q4", "footing_t3", "patch", "order", "elastic_bar", "rotation")},
+    "column_collapse": dynamic_slides.collapse_rows,
     "slope_gentle": lambda: slopes.rows("slope_gentle"),
     "slope": lambda: slopes.rows("slope"),
     "slope_triangles": slopes.triangles_rows,
