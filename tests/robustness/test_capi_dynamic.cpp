@@ -23,6 +23,21 @@ const char* const heap_text = R"({
     "probes": [{"name": "corner", "place": [0.0975, 0.1975]}]
 })";
 
+/// A slope of dry clay whose face crosses the grid at an angle; it stands.
+const char* const slope_text = R"({
+    "name": "slope",
+    "physics": {"water": false, "regime": "dynamic"},
+    "soils": [{"name": "clay", "dryDensity": 1800, "porosity": 0.4,
+               "solid": {"youngModulus": 5e6, "poissonRatio": 0.3,
+                         "strength": {"model": "constant", "cohesion": 12e3, "frictionAngle": 30}}}],
+    "ground": {"section": {"terrain": [[0, 7], [6, 7], [11, 2], [16.2, 2]], "base": [[0, 0], [16.2, 0]],
+                           "layers": [{"soil": "clay"}], "columnWidth": 0.5, "surfaceCellHeight": 0.5, "growth": 1,
+                           "largestCellHeight": 0.5}},
+    "boundaries": [{"side": "base", "motion": "fixed"}, {"side": "left", "motion": "roller"},
+                   {"side": "right", "motion": "roller"}],
+    "dynamics": {"cellSize": 0.5}
+})";
+
 std::vector<double> read(const host::Engine& engine, const char* field) {
     const talus_field shape = host::view(engine, field);
     std::vector<double> values(static_cast<size_t>(shape.shape[0] * (shape.rank == 2 ? shape.shape[1] : 1)));
@@ -188,4 +203,38 @@ TEST_CASE("C API: a dynamic ground that does not stand may start from an elastic
     text = heap_text;
     const host::Engine elastic = host::engine(text.replace(at, k0.size(), R"("stress": "elastic")").c_str());
     REQUIRE(talus_engine_step(elastic.get(), 0.1, nullptr) == TALUS_OK);
+}
+
+TEST_CASE("C API: a slope that stands in equilibrium stands in motion too") {
+    const host::Engine engine = host::engine(slope_text);
+    const char* description = nullptr;
+    REQUIRE(talus_engine_describe(engine.get(), &description) == TALUS_OK);
+    CHECK(host::contains(description, R"("regime":"dynamic")"));
+    CHECK(host::contains(description, R"("cell_size":0.490909090909)"));  // 33 cells between the walls
+    talus_step_report report = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_step(engine.get(), 1, &report) == TALUS_OK);
+    CHECK(report.peak_velocity < 0.05);          // without its stress it would fall at 1 m/s
+    CHECK(report.largest_displacement < 0.002);  // and settle by 70 mm
+    CHECK(report.sliding_volume == 0);
+    for (const double strain : read(engine, "plastic_strain")) CHECK(strain < 1e-3);
+}
+
+TEST_CASE("C API: the bonds of a column of clay break with slip, and it falls where it would have stood") {
+    std::string text = heap_text;
+    const std::string strength = R"("cohesion": 0, "frictionAngle": 31})";
+    const size_t at = text.find(strength);
+    REQUIRE(at != std::string::npos);
+    const auto run_out = [&](const std::string& clay) {
+        std::string changed = text;
+        const host::Engine engine = host::engine(changed.replace(at, strength.size(), clay).c_str());
+        talus_step_report report = TALUS_STEP_REPORT_INIT;
+        REQUIRE(talus_engine_step(engine.get(), 1, &report) == TALUS_OK);
+        return report.run_out;
+    };
+    const std::string bonds = R"("cohesion": 600, "frictionAngle": 20})";
+    const double standing = run_out(bonds);
+    const double breaking =
+        run_out(bonds + R"(, "softening": {"residualCohesion": 0, "residualFrictionAngle": 15, "slip": 0.001})");
+    CHECK(standing == 0);
+    CHECK(breaking > 0.2);
 }

@@ -19,6 +19,7 @@ CASES = {
     **{name: functools.partial(engine_cases.rows, name)
        for name in ("footing_q4", "footing_t3", "patch", "order", "elastic_bar", "rotation")},
     "column_collapse": dynamic_slides.collapse_rows,
+    "cohesive_slope": dynamic_slides.slope_rows,
     "slope_gentle": lambda: slopes.rows("slope_gentle"),
     "slope": lambda: slopes.rows("slope"),
     "slope_triangles": slopes.triangles_rows,

@@ -78,3 +78,36 @@ def bui_rows():
 def collapse_rows():
     yield from bui_rows()
     yield from lube_rows()
+
+
+# --- a cohesive slope that softens ---
+
+SLOPE_CELLS = (0.25, 0.125, 0.0625)  # m
+
+
+def slide(cell_size):
+    """Step report after the slope has come to rest, and its final profile."""
+    scene = read_scene("cohesive_slope")
+    scene["dynamics"]["cellSize"] = cell_size
+    with engine_from(scene) as engine:
+        report = engine.advance_to(scene["schedule"]["duration"])
+        assert report["largest_velocity"] < 0.1, "it still moves"
+        return report, thickness(engine)
+
+
+def slope_rows():
+    case, source = "cohesive_slope", "twice the cell's size"
+    reports, profiles, clocks = [], [], []
+    for cell_size in SLOPE_CELLS:
+        with Clock() as clock:
+            report, profile = slide(cell_size)
+        reports.append(report)
+        profiles.append(profile)
+        clocks.append(clock)
+    for name, quantity in (("run_out", "run-out"), ("dissipated_energy", "dissipated energy")):
+        values = [report[name] for report in reports]
+        listed = ", ".join(f"{value:.4g}" for value in values)
+        yield row(case, f"{quantity}: {listed}", "rel", abs(values[-1] / values[-2] - 1), 0.05, "1", source, clocks[-1])
+    (x, coarse), (finer_x, fine) = profiles[-2:]
+    difference = numpy.abs(numpy.interp(x, finer_x, fine, right=0) - coarse)
+    yield row(case, "profile, mean, over the height", "L1", numpy.mean(difference) / 5, 0.05, "1", source, clocks[-1])
