@@ -27,11 +27,6 @@ ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double grav
     nodes_.gravity = gravity;
     nodes_.least_mass =
         points_.count > 0 ? *std::min_element(points_[solid_mass], points_[solid_mass] + points_.count) : 0;
-    for (size_t p = 0; p < points_.count; ++p) {
-        const Elasticity& elastic = soils_[static_cast<size_t>(points_.soil[p])].elastic;
-        const double density = points_[solid_mass][p] / points_[point_volume][p];
-        wave_speed_ = std::max(wave_speed_, std::sqrt((elastic.lame + 2 * elastic.shear) / density));
-    }
     restart();
 }
 
@@ -154,7 +149,18 @@ void ExplicitMotion::arrange_points() {
     for (size_t p = 0; p < points_.count; ++p) order[start[key[p]]++] = static_cast<int32_t>(p);
     points_.arrange(order);
     find_spans();
+    find_wave_speed();
     drift_ = 0;
+}
+
+/// Of the points as they are: ground that dilates becomes lighter, and its waves faster.
+void ExplicitMotion::find_wave_speed() {
+    wave_speed_ = 0;
+    for (size_t p = 0; p < points_.count; ++p) {
+        const Elasticity& elastic = soils_[static_cast<size_t>(points_.soil[p])].elastic;
+        const double density = points_[solid_mass][p] / points_[point_volume][p];
+        wave_speed_ = std::max(wave_speed_, std::sqrt((elastic.lame + 2 * elastic.shear) / density));
+    }
 }
 
 /// The grid about the points, with room for them to drift; only ever larger.

@@ -58,6 +58,7 @@ private:
     void arrange_points();
     void fit_grid();
     void find_spans();
+    void find_wave_speed();
     template <class Handle>
     void for_each_strip(const Handle& handle);
     void stress_and_forces(Strip strip, double dt);
@@ -71,7 +72,7 @@ private:
     std::vector<Strip> strips_;
     std::unique_ptr<tbb::task_arena> threads_;  // empty: this one alone
     bool yields_ = false;                       // any soil
-    double wave_speed_ = 0;                     // m/s, the fastest at the start
+    double wave_speed_ = 0;                     // m/s, the fastest when the points were arranged
     double drift_ = 0;                          // cells that a point may have moved since it was arranged
 };
 
