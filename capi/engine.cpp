@@ -13,6 +13,7 @@ namespace {
 Options options_of(talus_engine& engine) {
     Options options;
     options.tolerance = engine.options.tolerance;
+    options.threads = engine.options.threads;
     if (engine.options.log != nullptr) {
         options.log = [&engine](int32_t level, const std::string& text) {
             const HostFloatingPoint floating_point(*engine.host);
@@ -36,6 +37,10 @@ talus_options checked(const talus_options* given) {
     if (options.rain_policy < TALUS_RAIN_REJECT || options.rain_policy > TALUS_RAIN_ZERO) {
         throw Error(Status::invalid_argument, "options.rain_policy is " + std::to_string(options.rain_policy) +
                                                   ", which must be TALUS_RAIN_REJECT, _HOLD or _ZERO");
+    }
+    if (options.threads < 0 || options.threads > 1024) {
+        throw Error(Status::invalid_argument, "options.threads is " + std::to_string(options.threads) +
+                                                  ", which must be 0 (one) or between 1 and 1024");
     }
     if (!(options.tolerance >= 0 && options.tolerance < 1)) {
         throw Error(Status::invalid_argument, "options.tolerance is " + std::to_string(options.tolerance) +
@@ -121,6 +126,15 @@ talus_step_report report_of(const talus_engine& engine, const StepReport& step) 
     report.seconds_flow = step.seconds_flow;
     report.seconds_motion = step.seconds_motion;
     report.seconds_total = step.seconds_total;
+    report.motion_substeps = step.motion.substeps;
+    report.kinetic_energy = step.motion.kinetic_energy;
+    report.elastic_energy = step.motion.elastic_energy;
+    report.potential_energy = step.motion.potential_energy;
+    report.dissipated_energy = step.motion.dissipated_energy;
+    report.peak_velocity = step.motion.peak_velocity;
+    report.sliding_volume = step.motion.sliding_volume;
+    report.front_x = step.motion.front_x;
+    report.run_out = step.motion.run_out;
     return report;
 }
 

@@ -94,26 +94,27 @@ void check_boundaries_touch(const Simulation& simulation, const Scene& scene) {
     if (!untouched.empty()) throw Error(Status::invalid_scene, untouched);
 }
 
+bool lies_in_ground(const ProbeTrack& probe) { return probe.cell_place.cell >= 0 || probe.point >= 0; }
+
 }  // namespace
 
 Engine::State::State(std::shared_ptr<const Scene> scene_in, Options options_in)
     : scene(validated(std::move(scene_in))),
       options(std::move(options_in)),
-      simulation(*scene, options.tolerance > 0 ? options.tolerance : scene->numerics.tolerance),
+      simulation(*scene, options.tolerance > 0 ? options.tolerance : scene->numerics.tolerance, options.threads),
       locator(simulation.reference_mesh()) {
     check_boundaries_touch(simulation, *scene);
+    if (simulation.dynamic() != nullptr) number_point_soils();
     quantities = probe_quantities();
     for (size_t k = 0; k < scene->probes.size(); ++k) {
         const auto [x, y] = scene->probes[k].place;
-        const CellPlace cell_place = locator.locate(x, y);
-        if (cell_place.cell < 0)
+        probes.push_back(make_probe(scene->probes[k].name, {x, y}));
+        if (!lies_in_ground(probes.back()))
             throw Error(Status::invalid_scene, item_path("probes", k) + ".place = (" + value_text(x) + ", " +
                                                    value_text(y) + ") m: must lie in the ground");
-        probes.push_back(
-            {scene->probes[k].name, {x, y}, cell_place, std::vector<std::vector<double>>(quantities.size())});
     }
     record_probes();
-    report.regime = Regime::quasi_static;
+    if (simulation.dynamic() != nullptr) report_motion();
     report_water(report.water);
     report.least_factor_of_safety = simulation.least_factor_of_safety();
     description = describe();
@@ -236,6 +237,7 @@ Status Engine::advance_to(double until, StepReport& report) {
     state.time = until;
     ++state.epoch;
     state.derived.clear();
+    state.nearest.reset();
     const StepCounts& counts = state.simulation.counts;
     const FlowStatistics flow = state.simulation.flow_statistics();
     StepReport& last = state.report;
@@ -254,6 +256,7 @@ Status Engine::advance_to(double until, StepReport& report) {
     last.least_factor_of_safety = state.simulation.least_factor_of_safety();
     last.seconds_flow = counts.seconds_flow;
     last.seconds_motion = counts.seconds_motion;
+    if (state.simulation.dynamic() != nullptr) state.report_motion();
     state.tell_happenings();
     state.record_probes();
     last.seconds_total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -306,14 +309,10 @@ bool Engine::sample(std::string_view field, std::span<const double> places, std:
     for (size_t i = 0; i < places.size() / dimension; ++i) {
         const double x = dimension == 1 ? 0.0 : places[2 * i];
         const double y = places[i * dimension + dimension - 1];
-        const CellPlace cell_place = state_->locator.locate(x, y);
         const std::span<double> value = values.subspan(i * components, components);
-        if (cell_place.cell >= 0) {
-            state_->sample(view, cell_place, value);
-        } else {
-            std::fill(value.begin(), value.end(), std::numeric_limits<double>::quiet_NaN());
-            all_inside = false;
-        }
+        if (state_->sample(view, x, y, value)) continue;
+        std::fill(value.begin(), value.end(), std::numeric_limits<double>::quiet_NaN());
+        all_inside = false;
     }
     return all_inside;
 }
@@ -327,11 +326,10 @@ int32_t Engine::probe(std::string_view name) const {
 }
 
 int32_t Engine::add_probe(const std::string& name, Place place) {
-    const CellPlace cell_place = state_->locator.locate(place[0], place[1]);
-    if (cell_place.cell < 0)
+    ProbeTrack probe = state_->make_probe(name, place);
+    if (!lies_in_ground(probe))
         throw Error(Status::invalid_argument, "probe '" + name + "' at (" + value_text(place[0]) + ", " +
                                                   value_text(place[1]) + ") m: must lie in the ground");
-    ProbeTrack probe{name, place, cell_place, std::vector<std::vector<double>>(state_->quantities.size())};
     const std::vector<double> unknown(state_->probe_times.size() - 1, std::numeric_limits<double>::quiet_NaN());
     for (auto& history : probe.history) history = unknown;
     state_->record(probe);
@@ -369,6 +367,10 @@ uint64_t Engine::hash() const {
           &ground.points.strain, &ground.points.plastic_strain, &ground.points.mobilised_strength})
         mix(*field);
     mix({ground.flow.totals.begin(), ground.flow.totals.end()});
+    if (state_->simulation.dynamic() == nullptr) return hash;
+    const FreePoints& points = state_->simulation.dynamic()->points();
+    for (const auto& field : points.field) mix(field);
+    mix({points.number.begin(), points.number.end()});
     return hash;
 }
 

@@ -2,6 +2,7 @@
 // from any. Everything throws talus::Error; a call that throws leaves the engine as it was before the call.
 #pragma once
 
+#include "coupling/motion_report.hpp"
 #include "error.hpp"
 #include "scene/load.hpp"
 
@@ -33,6 +34,7 @@ struct WaterBalance {
 enum class Regime : int32_t {
     quasi_static = 0,
     equilibrium_lost = 1,  ///< failure was found: the skeleton stands as it was, the flow goes on
+    dynamic = 2,           ///< the ground moves by its momentum
 };
 
 struct StepReport {
@@ -51,6 +53,7 @@ struct StepReport {
     double seconds_flow = 0;            ///< wall seconds of this step
     double seconds_motion = 0;
     double seconds_total = 0;
+    MotionReport motion;  ///< of a dynamic ground
 };
 
 enum class EventKind : int32_t {
@@ -87,6 +90,7 @@ struct FieldView {
 
 struct Options {
     double tolerance = 0;  ///< 0: the scene's
+    int32_t threads = 1;   ///< of a dynamic ground; 0: one. Results do not depend on it
     std::function<void(int32_t level, const std::string& text)> log;
     /// Called inside a step with the fraction done; true cancels.
     std::function<bool(double fraction)> progress;

@@ -31,6 +31,7 @@ const char* motion_name(const Boundary& boundary) {
         case MotionCondition::fixed: return "fixed";
         case MotionCondition::displacement: return "displacement";
         case MotionCondition::traction: return "traction";
+        case MotionCondition::friction: return "friction";
     }
     return nullptr;
 }
@@ -40,8 +41,10 @@ ordered_json text_or_null(const char* text) { return text != nullptr ? ordered_j
 ordered_json left_out(const Scene& scene) {
     ordered_json list = ordered_json::array();
     list.push_back("gas flow: gas pressure is that of the atmosphere");
-    list.push_back("inertia: equilibrium is quasi-static");
-    if (!scene.physics.water) list.push_back("water: no pore pressure is held, no flow is solved");
+    const bool is_dynamic = scene.physics.regime == MotionRegime::dynamic;
+    if (!is_dynamic) list.push_back("inertia: equilibrium is quasi-static");
+    if (is_dynamic) list.push_back("pore fluids: they are not supported yet in a dynamic ground");
+    if (!scene.physics.water && !is_dynamic) list.push_back("water: no pore pressure is held, no flow is solved");
     if (!scene.physics.deforming) list.push_back("deformation: no stress is held, no equilibrium is solved");
     if (scene.ground.kind == GroundKind::column) list.push_back("the horizontal dimension");
     return list;
@@ -60,23 +63,35 @@ int64_t bytes_held(const Simulation& simulation) {
           &points.skeleton_stress,  &points.strain,       &points.plastic_strain,   &points.mobilised_strength,
           &points.pressure,         &points.saturation,   &points.porosity,         &points.darcy_flux})
         values += field->size();
-    return static_cast<int64_t>(values * sizeof(double));
+    size_t bytes = values * sizeof(double);
+    if (simulation.dynamic() != nullptr) {
+        const FreePoints& moving = simulation.dynamic()->points();
+        bytes += moving.count * moving.bytes_a_point();
+    }
+    return static_cast<int64_t>(bytes);
 }
 
 std::string Engine::State::describe() const {
     const Scene& s = *scene;
     const Mesh& mesh = simulation.mesh();
+    const DynamicGround* dynamic = simulation.dynamic();
     ordered_json json;
     json["name"] = s.name;
     json["title"] = s.title;
     json["dimension"] = mesh.dimension;
     json["physics"] = {{"water", s.physics.water},
                        {"deforming", s.physics.deforming},
-                       {"stress", s.physics.stress == StressMeasure::net ? "net" : "bishop"}};
+                       {"stress", s.physics.stress == StressMeasure::net ? "net" : "bishop"},
+                       {"regime", dynamic != nullptr ? "dynamic" : "quasi_static"}};
     json["left_out"] = left_out(s);
-    json["nodes"] = mesh.node_count();
-    json["cells"] = mesh.cell_count();
-    json["points"] = simulation.state().points.count;
+    json["nodes"] = dynamic == nullptr ? mesh.node_count() : 0;
+    json["cells"] = dynamic == nullptr ? mesh.cell_count() : 0;
+    json["points"] =
+        dynamic == nullptr ? static_cast<size_t>(simulation.state().points.count) : dynamic->points().count;
+    if (dynamic != nullptr) {
+        json["cell_size"] = dynamic->cell_size();
+        json["bytes_a_point"] = dynamic->points().bytes_a_point();
+    }
     json["unknowns"] = {{"flow", simulation.flow() != nullptr ? mesh.node_count() : 0},
                         {"motion", simulation.motion_unknowns()}};
     json["bytes"] = bytes_held(simulation);

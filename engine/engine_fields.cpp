@@ -113,32 +113,6 @@ std::vector<double> derive(std::string_view name, const Simulation& simulation, 
     return stress_with(points, added);
 }
 
-/// Values at a place in a cell, from its points: linear over them, kept within their range.
-template <class Shape>
-void sample_points(const double* rows, int64_t components, const typename Shape::Natural& at,
-                   std::span<double> values) {
-    // The points are the corners of a smaller copy of the cell about its centre, in the same order.
-    typename Shape::Natural place = at;
-    if constexpr (Shape::nodes == 3) {
-        place = {2.0 * at[0] - 1.0 / 3.0, 2.0 * at[1] - 1.0 / 3.0};
-    } else {
-        for (double& coordinate : place) coordinate /= Shape::gauss;
-    }
-    const auto share = Shape::values(place);
-    for (size_t k = 0; k < static_cast<size_t>(components); ++k) {
-        double low = rows[k];
-        double high = rows[k];
-        double value = 0;
-        for (size_t i = 0; i < Shape::points; ++i) {
-            const double here = rows[i * static_cast<size_t>(components) + k];
-            value += share[i] * here;
-            low = std::min(low, here);
-            high = std::max(high, here);
-        }
-        values[k] = std::clamp(value, low, high);
-    }
-}
-
 constexpr std::array plane_axes{"x", "y"};
 constexpr std::array tensor_axes{"xx", "yy", "zz", "xy"};
 
@@ -151,6 +125,7 @@ std::string component_name(const FieldEntry& entry, int64_t components, size_t k
 }  // namespace
 
 std::vector<std::string> Engine::State::field_names() const {
+    if (simulation.dynamic() != nullptr) return point_field_names();
     std::vector<std::string> names;
     for (const FieldEntry& entry : fields)
         if (has(entry, *scene)) names.emplace_back(entry.name);
@@ -158,6 +133,7 @@ std::vector<std::string> Engine::State::field_names() const {
 }
 
 FieldView Engine::State::view(std::string_view field) const {
+    if (simulation.dynamic() != nullptr) return view_points(field);
     const FieldEntry& entry = find_entry(field, *scene);
     const Mesh& mesh = simulation.mesh();
     FieldView view;
@@ -188,7 +164,18 @@ FieldView Engine::State::view(std::string_view field) const {
     return view;
 }
 
-void Engine::State::sample(const FieldView& field, const CellPlace& place, std::span<double> values) const {
+bool Engine::State::sample(const FieldView& field, double x, double y, std::span<double> values) const {
+    if (simulation.dynamic() != nullptr) {
+        const int32_t point = nearest_point(x, y);
+        if (point >= 0) copy_row(field, point, values);
+        return point >= 0;
+    }
+    const CellPlace place = locator.locate(x, y);
+    if (place.cell >= 0) sample_cell(field, place, values);
+    return place.cell >= 0;
+}
+
+void Engine::State::sample_cell(const FieldView& field, const CellPlace& place, std::span<double> values) const {
     const Mesh& mesh = simulation.mesh();
     const auto cell = static_cast<size_t>(place.cell);
     const auto* rows = static_cast<const double*>(field.data);
@@ -225,6 +212,7 @@ void Engine::State::sample(const FieldView& field, const CellPlace& place, std::
 }
 
 std::vector<std::string> Engine::State::probe_quantities() const {
+    if (simulation.dynamic() != nullptr) return point_quantities();
     std::vector<std::string> names;
     for (const FieldEntry& entry : fields) {
         const bool is_place = std::string_view(entry.name).find("position") != std::string_view::npos;
@@ -237,6 +225,16 @@ std::vector<std::string> Engine::State::probe_quantities() const {
     return names;
 }
 
+ProbeTrack Engine::State::make_probe(const std::string& name, Place place) const {
+    ProbeTrack probe{name, place, {}, -1, std::vector<std::vector<double>>(quantities.size())};
+    if (simulation.dynamic() != nullptr) {
+        probe.point = nearest_point(place[0], place[1]);
+    } else {
+        probe.cell_place = locator.locate(place[0], place[1]);
+    }
+    return probe;
+}
+
 void Engine::State::record(ProbeTrack& probe) const {
     size_t quantity = 0;
     std::array<double, 4> values{};
@@ -244,7 +242,12 @@ void Engine::State::record(ProbeTrack& probe) const {
         const std::string_view name = std::string_view(quantities[quantity]).substr(0, quantities[quantity].find('.'));
         const FieldView field = view(name);
         const auto components = static_cast<size_t>(field.components);
-        sample(field, probe.cell_place, std::span(values).first(components));
+        const std::span<double> row = std::span(values).first(components);
+        if (probe.point >= 0) {
+            copy_row(field, probe.point, row);
+        } else {
+            sample_cell(field, probe.cell_place, row);
+        }
         for (size_t k = 0; k < components; ++k) probe.history[quantity + k].push_back(values[k]);
         quantity += components;
     }

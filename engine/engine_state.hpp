@@ -2,6 +2,7 @@
 #pragma once
 
 #include "background/locate.hpp"
+#include "background/nearest.hpp"
 #include "coupling/simulation.hpp"
 #include "engine.hpp"
 
@@ -13,11 +14,12 @@
 
 namespace talus {
 
-/// A probe stays with the ground: it is a place in a cell, not in space.
+/// A probe stays with the ground: it is a place in a cell, or a material point, not a place in space.
 struct ProbeTrack {
     std::string name;
-    Place place;  ///< at the start, m
-    CellPlace cell_place;
+    Place place;                               ///< at the start, m
+    CellPlace cell_place;                      ///< of a quasi-static ground
+    int32_t point = -1;                        ///< of a dynamic one: the nearest to the place
     std::vector<std::vector<double>> history;  ///< one a quantity, one value a row of Engine::State::probe_times
 };
 
@@ -40,15 +42,30 @@ struct Engine::State {
 
     /// Fields that are made from others, when they are asked for; of the present epoch.
     mutable std::map<std::string, std::vector<double>, std::less<>> derived;
+    mutable std::unique_ptr<NearestPlace> nearest;  ///< of a dynamic ground's points, of the present epoch
+    std::vector<int32_t> point_soil;                ///< of a dynamic ground, by the points' numbers
 
     // engine_fields.cpp
     [[nodiscard]] std::vector<std::string> field_names() const;
     [[nodiscard]] FieldView view(std::string_view field) const;
-    /// The field's values at a place in a cell, one a component.
-    void sample(const FieldView& field, const CellPlace& place, std::span<double> values) const;
+    /// The field's values at a place, one a component. False: it lies outside the ground.
+    bool sample(const FieldView& field, double x, double y, std::span<double> values) const;
+    void sample_cell(const FieldView& field, const CellPlace& place, std::span<double> values) const;
     [[nodiscard]] std::vector<std::string> probe_quantities() const;
     void record_probes();
     void record(ProbeTrack& probe) const;
+    /// A probe without a history yet; it has neither cell nor point where the place lies outside the ground.
+    [[nodiscard]] ProbeTrack make_probe(const std::string& name, Place place) const;
+
+    // engine_dynamic_fields.cpp
+    void number_point_soils();
+    [[nodiscard]] std::vector<std::string> point_field_names() const;
+    [[nodiscard]] std::vector<std::string> point_quantities() const;
+    [[nodiscard]] FieldView view_points(std::string_view field) const;
+    /// The number of the nearest point within a cell's size, -1 where there is none.
+    [[nodiscard]] int32_t nearest_point(double x, double y) const;
+    static void copy_row(const FieldView& field, int32_t point, std::span<double> values);
+    void report_motion();
 
     // engine_describe.cpp
     [[nodiscard]] std::string describe() const;

@@ -86,6 +86,34 @@ def draw_contours(run, figure):
     rows[-1].set_xlabel("x, m")
 
 
+# --- a dynamic ground: frames of its points ---
+
+def draw_frames(run, figure):
+    rows = figure.subplots(len(run.times), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    scale = figure.dpi * figure.get_figwidth()
+    for axes, time in zip(rows, run.times):
+        points = run.fields(time).points
+        distance = numpy.linalg.norm(points["displacement"], axis=1)
+        width = numpy.ptp(run.fields(run.times[-1]).points["position"][:, 0])
+        size = max((0.5 * run.report["engine"]["cell_size"] / width * scale * 0.7) ** 2, 0.2)
+        drawn = axes.scatter(points["position"][:, 0], points["position"][:, 1], c=distance, s=size, cmap="viridis", marker="s",
+                             linewidths=0)
+        figure.colorbar(drawn, ax=axes, label="displaced, m")
+        axes.set(title=time_text(time), ylabel="y, m", aspect="equal")
+    rows[-1].set_xlabel("x, m")
+
+
+def draw_energy(run, figure):
+    energies, run_out = figure.subplots(2, 1, sharex=True)
+    time = run.steps("time")
+    for name in ("kinetic", "elastic", "potential", "dissipated"):
+        energies.plot(time, run.steps(f"{name}_energy"), label=name)
+    energies.set_ylabel("energy, J/m")
+    energies.legend()
+    run_out.plot(time, run.steps("run_out"))
+    run_out.set(xlabel="time, s", ylabel="run-out, m")
+
+
 # --- histories and water ---
 
 def displacement_size(run, probe):
@@ -141,7 +169,10 @@ def main():
     has_water = run.report["engine"]["physics"]["water"]
     if run.times and run.report["engine"]["dimension"] == 1 and has_water:
         draw(run, "profiles", draw_profiles, (7, 4.5))
-    if run.times and run.report["engine"]["dimension"] == 2:
+    if run.report["engine"]["physics"]["regime"] == "dynamic":
+        draw(run, "frames", draw_frames, (7, 2 * len(run.times)))
+        draw(run, "energy", draw_energy, (7, 5))
+    elif run.times and run.report["engine"]["dimension"] == 2:
         draw(run, "contours", draw_contours, (7, 9))
     if run.probes:
         draw(run, "histories", draw_histories, (7, 7))

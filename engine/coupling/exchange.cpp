@@ -33,7 +33,7 @@ double growth(double first_disagreement) {
 
 }  // namespace
 
-Simulation::Exchange Simulation::exchange(double duration, const std::function<bool(double)>& cancelled) {
+Simulation::Exchange Simulation::exchange(double duration, const Cancelled& cancelled) {
     const bool moves = skeleton_moves();
     FlowState flow = state_.flow;
     FlowWatch watch = state_.watch;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flow/integrator.hpp"
+#include "points/free_points.hpp"
 #include "points/points.hpp"
 
 #include <cstdint>
@@ -20,11 +21,12 @@ struct FlowWatch {
 };
 
 struct GroundState {
-    double time = 0;                    ///< s
-    std::vector<double> node_position;  ///< nodes x dimension, m
-    std::vector<double> displacement;   ///< nodes x dimension, m; empty: rigid
-    std::vector<double> velocity;       ///< nodes x dimension, m/s, mean over the last step; empty: rigid
-    Points points;
+    double time = 0;                       ///< s
+    std::vector<double> node_position;     ///< nodes x dimension, m
+    std::vector<double> displacement;      ///< nodes x dimension, m; empty: rigid
+    std::vector<double> velocity;          ///< nodes x dimension, m/s, mean over the last step; empty: rigid
+    Points points;                         ///< empty: dynamic
+    FreePoints moving;                     ///< of a dynamic ground, in a state that was saved
     FlowState flow;                        ///< empty: dry
     std::vector<double> pore_volume;       ///< per portion, m3: what the ground has
     std::vector<double> flow_pore_volume;  ///< per portion, m3: what the flow last took for it

@@ -39,7 +39,7 @@ double suction_of(const HydraulicTable& table, const Soil& soil, size_t number, 
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene, double tolerance)
+Simulation::Simulation(const Scene& scene, double tolerance, int32_t threads)
     : forcing(scene), scene_(scene), tolerance_(tolerance), mesh_(build_mesh(scene)), reference_mesh_(mesh_) {
     state_.points = make_points(mesh_);
     state_.node_position = mesh_.position;
@@ -49,6 +49,7 @@ Simulation::Simulation(const Scene& scene, double tolerance)
     if (scene.physics.deforming) make_motion();
     if (flow_) set_initial_flow();
     if (equilibrium_) set_initial_stress();
+    if (scene.physics.regime == MotionRegime::dynamic) make_dynamic(threads);
     update_points();
 }
 
@@ -156,10 +157,12 @@ std::vector<uint8_t> Simulation::hold_nodes() {
     return prescribed;
 }
 
-// A fixed boundary holds both components, a roller the one across it.
+// A fixed boundary holds both components, a roller the one across it; ground at rest sticks to a base with friction, and has settled along an
+// upright wall with friction.
 bool Simulation::holds(const Boundary& boundary, const Facet& facet, size_t axis) const {
-    if (boundary.motion == MotionCondition::fixed) return true;
-    if (boundary.motion != MotionCondition::roller) return false;
+    const bool rubs = boundary.motion == MotionCondition::friction;
+    if (boundary.motion == MotionCondition::fixed || (rubs && boundary.side == "base")) return true;
+    if (boundary.motion != MotionCondition::roller && !rubs) return false;
     if (mesh_.dimension == 1) return true;
     const Place a = place_of(facet.node_a);
     const Place b = place_of(facet.node_b);
@@ -252,20 +255,42 @@ void Simulation::set_initial_stress() {
     set_loads(state_.flow, state_.time);
     for (const GivenDisplacement& given : given_displacements_) prescribed_displacement_[given.freedom] = 0;
     const Loads loads{point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_};
-    if (scene_.initial.stress == InitialStress::zero) return;
-    outcome_ = scene_.initial.stress == InitialStress::gravity
-                   ? turn_on_gravity(*equilibrium_, loads)
-                   : set_k0_stress(*equilibrium_, mesh_, state_.points, loads, scene_.gravity, scene_.initial.k0);
+    outcome_ = find_initial_stress(loads);
     if (outcome_.status == EquilibriumStatus::converged) return;
     const auto [x, y] = outcome_.collapse.place;
     const std::string where = " at (" + value_text(x) + ", " + value_text(y) + ") m";
     if (outcome_.status == EquilibriumStatus::no_equilibrium) {
+        const bool may_fall = scene_.physics.regime == MotionRegime::dynamic;
         throw Error(Status::invalid_scene,
-                    "initial.stress: the ground does not stand under its own weight: it fails" + where);
+                    "initial.stress: the ground does not stand under its own weight: it fails" + where +
+                        (may_fall ? "; a dynamic ground may start from elastic, k0 or zero" : ""));
     }
     throw Error(
         Status::not_converged,
         "initial.stress: no equilibrium was found under the ground's own weight; this says nothing about the slope");
+}
+
+EquilibriumOutcome Simulation::find_initial_stress(const Loads& loads) {
+    EquilibriumOutcome none;
+    none.status = EquilibriumStatus::converged;
+    switch (scene_.initial.stress) {
+        case InitialStress::zero: return none;
+        case InitialStress::elastic: return turn_on_gravity_elastically(*equilibrium_, loads);
+        case InitialStress::gravity: return turn_on_gravity(*equilibrium_, loads);
+        case InitialStress::k0: break;
+    }
+    if (scene_.physics.regime == MotionRegime::quasi_static)
+        return set_k0_stress(*equilibrium_, mesh_, state_.points, loads, scene_.gravity, scene_.initial.k0);
+    put_k0_stress(mesh_, state_.points, loads, scene_.gravity, scene_.initial.k0);
+    return none;
+}
+
+// What moves are the points alone: the mesh and its equilibrium have served.
+void Simulation::make_dynamic(int32_t threads) {
+    dynamic_ = std::make_unique<DynamicGround>(scene_, mesh_, state_.points, threads);
+    equilibrium_.reset();
+    motion_unknowns_ = 0;
+    state_ = {};
 }
 
 }  // namespace talus

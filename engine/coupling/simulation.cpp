@@ -19,7 +19,12 @@ std::string at_time(double time) { return "t = " + value_text(time) + " s: "; }
 }  // namespace
 
 // The macro step. Everything that a host step does is named here once.
-bool Simulation::advance(double until, const std::function<bool(double)>& cancelled) {
+bool Simulation::advance(double until, const Cancelled& cancelled) {
+    if (dynamic_) {
+        const bool is_done = dynamic_->advance(state_.time, until, cancelled);
+        state_.time = until;
+        return is_done;
+    }
     const double from = state_.time;
     const double whole = until - from;
     const std::vector<double> displacement_before = state_.displacement;
@@ -80,8 +85,19 @@ void Simulation::note_rain_end() {
     state_.rain_is_out = true;
 }
 
+GroundState Simulation::save() const {
+    GroundState state = state_;
+    if (dynamic_) state.moving = dynamic_->points();
+    return state;
+}
+
 void Simulation::restore(const GroundState& state) {
     state_ = state;
+    if (dynamic_) {
+        dynamic_->restore(state.moving);
+        state_.moving = {};
+        return;
+    }
     mesh_.position = state.node_position;
     if (equilibrium_) equilibrium_->restore(state.displacement);
     refresh_geometry();

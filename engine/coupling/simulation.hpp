@@ -5,15 +5,16 @@
 // Juanes, Comput. Methods Appl. Mech. Eng. 200, 2011). The exchanges' length follows from how well the expectation was met.
 #pragma once
 
+#include "coupling/dynamic.hpp"
 #include "coupling/forcing.hpp"
 #include "coupling/ground_state.hpp"
+#include "coupling/progress.hpp"
 #include "flow/integrator.hpp"
 #include "ground/mesh.hpp"
 #include "motion/anderson.hpp"
 #include "motion/equilibrium.hpp"
 #include "scene/scene.hpp"
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,13 +50,13 @@ struct Happening {
 class Simulation {
 public:
     /// Builds the ground and its initial state. Throws Error(invalid_scene) where there is none.
-    Simulation(const Scene& scene, double tolerance);
+    Simulation(const Scene& scene, double tolerance, int32_t threads);
 
     /// Carries the state to `until` (s). False when `cancelled(fraction)` said so. Throws Error(not_converged) when a solver stops. In both
     /// cases the caller puts the state back with restore().
-    bool advance(double until, const std::function<bool(double)>& cancelled);
+    bool advance(double until, const Cancelled& cancelled);
 
-    [[nodiscard]] GroundState save() const { return state_; }
+    [[nodiscard]] GroundState save() const;
     void restore(const GroundState& state);
 
     /// To be told, once, that the rain series ended within the last advance.
@@ -79,6 +80,7 @@ public:
         return point_pore_stress_;
     }  ///< per point, Pa; empty: rigid or dry
     [[nodiscard]] size_t motion_unknowns() const { return motion_unknowns_; }
+    [[nodiscard]] const DynamicGround* dynamic() const { return dynamic_.get(); }  ///< nullptr: quasi-static
 
 private:
     enum class Exchange { agreed, cancelled, disagreed, flow_stopped, equilibrium_lost };
@@ -92,9 +94,11 @@ private:
     void find_steady_flow();
     [[nodiscard]] std::vector<double> steady_guess() const;
     void set_initial_stress();
+    EquilibriumOutcome find_initial_stress(const Loads& loads);
+    void make_dynamic(int32_t threads);
 
     // the exchange (exchange.cpp)
-    Exchange exchange(double duration, const std::function<bool(double)>& cancelled);
+    Exchange exchange(double duration, const Cancelled& cancelled);
     [[nodiscard]] bool skeleton_moves() const { return equilibrium_ && !state_.equilibrium_lost; }
     void shorten_exchange(double duration, double whole, const std::string& problem);
     void lose_equilibrium();
@@ -123,7 +127,8 @@ private:
     GroundState state_;
     std::unique_ptr<FlowSystem> flow_;            // empty: dry
     std::unique_ptr<FlowIntegrator> integrator_;  // empty: dry
-    std::unique_ptr<Equilibrium> equilibrium_;    // empty: rigid
+    std::unique_ptr<Equilibrium> equilibrium_;    // empty: rigid, or dynamic
+    std::unique_ptr<DynamicGround> dynamic_;      // empty: quasi-static
     double initial_water_ = 0;
     size_t motion_unknowns_ = 0;
     double agreement_pressure_ = 0;  // Pa: pore volumes agree where the difference moves the pressure by less

@@ -58,15 +58,19 @@ EquilibriumOutcome yield_in_place(Equilibrium& equilibrium, const Loads& loads) 
 
 }  // namespace
 
-EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads) {
+EquilibriumOutcome turn_on_gravity_elastically(Equilibrium& equilibrium, const Loads& loads) {
     const EquilibriumOutcome elastic = equilibrium.solve_elastically(loads);
+    if (elastic.status == EquilibriumStatus::converged) equilibrium.accept_stress();
+    return elastic;
+}
+
+EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads) {
+    const EquilibriumOutcome elastic = turn_on_gravity_elastically(equilibrium, loads);
     if (elastic.status != EquilibriumStatus::converged) return elastic;
-    equilibrium.accept_stress();
     return yield_in_place(equilibrium, loads);
 }
 
-EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Points& points, const Loads& loads,
-                                 double gravity, double k0) {
+void put_k0_stress(const Mesh& mesh, Points& points, const Loads& loads, double gravity, double k0) {
     const auto cells = static_cast<size_t>(mesh.cell_count());
     const auto dimension = static_cast<size_t>(mesh.dimension);
     const std::vector<double> density = cell_means(points, loads.density, cells);
@@ -82,6 +86,11 @@ EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Poi
         const std::array<double, 4> stress = {k0 * vertical, vertical, k0 * vertical, 0};
         std::copy(stress.begin(), stress.end(), points.skeleton_stress.begin() + static_cast<std::ptrdiff_t>(4 * p));
     }
+}
+
+EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Points& points, const Loads& loads,
+                                 double gravity, double k0) {
+    put_k0_stress(mesh, points, loads, gravity, k0);
     equilibrium.accept_stress();
     return yield_in_place(equilibrium, loads);
 }

@@ -9,8 +9,14 @@ namespace talus {
 /// outcome is converged; otherwise the trial one stands and says where the ground gives way.
 EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads);
 
-/// Vertical stress from the weight above each point, horizontal skeleton stress `k0` times the vertical one, then equilibrium
-/// with the soils' strength, as above. `gravity` in m/s2.
+/// The same without the soils' strength: the stress may be more than they bear.
+EquilibriumOutcome turn_on_gravity_elastically(Equilibrium& equilibrium, const Loads& loads);
+
+/// Vertical stress from the weight above each point, horizontal skeleton stress `k0` times the vertical one; in no equilibrium. `gravity` in
+/// m/s2.
+void put_k0_stress(const Mesh& mesh, Points& points, const Loads& loads, double gravity, double k0);
+
+/// The same, then equilibrium with the soils' strength, as in turn_on_gravity().
 EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Points& points, const Loads& loads,
                                  double gravity, double k0);
 

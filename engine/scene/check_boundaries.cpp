@@ -51,10 +51,40 @@ void check_flow(const Check& check, const Boundary& boundary, const Physics& phy
     check_series(value, boundary.flow_value, quantity);
 }
 
+/// In a dynamic ground only whole sides that are straight and along an axis are held, as walls.
+void check_wall(const Check& check, const Boundary& boundary, const Ground& ground) {
+    if (!boundary.has_motion || boundary.motion == MotionCondition::free) return;
+    const Check motion = check.at("motion");
+    const std::string dynamic = " is not supported yet in a dynamic ground";
+    if (boundary.motion == MotionCondition::displacement || boundary.motion == MotionCondition::traction)
+        return motion.say("= " + name(boundary.motion) + ":" + dynamic + "; must be free, roller, fixed or friction");
+    if (boundary.side != "base" && boundary.side != "left" && boundary.side != "right")
+        return motion.say("= " + name(boundary.motion) + ": on the side '" + boundary.side + "'" + dynamic +
+                          "; must be on base, left or right");
+    const bool whole = std::isinf(boundary.x_from) && std::isinf(boundary.x_to) && std::isinf(boundary.y_from) &&
+                       std::isinf(boundary.y_to);
+    motion.require(whole, "= " + name(boundary.motion) + ": on a part of a side" + dynamic +
+                              "; leave xFrom, xTo, yFrom and yTo out");
+    if (boundary.side != "base" || ground.kind != GroundKind::section || ground.section.base.empty()) return;
+    const std::vector<Place>& base = ground.section.base;
+    const bool level =
+        std::all_of(base.begin(), base.end(), [&](const Place& place) { return place[1] == base.front()[1]; });
+    motion.require(level, "= " + name(boundary.motion) + ": on a base that is not level" + dynamic);
+}
+
 void check_motion(const Check& check, const Boundary& boundary, const Scene& scene) {
     const bool column = scene.ground.kind == GroundKind::column;
     const bool x_given = is_given(boundary.motion_x);
     const bool y_given = is_given(boundary.motion_y);
+    const bool rubs = boundary.has_motion && boundary.motion == MotionCondition::friction;
+    check.at("frictionAngle")
+        .used(rubs, given(boundary.friction_angle),
+              boundary.has_motion ? name(boundary.motion) : "a boundary without motion");
+    if (scene.physics.regime == MotionRegime::dynamic) {
+        check_wall(check, boundary, scene.ground);
+    } else {
+        check.at("motion").require(!rubs, "= friction: needs a dynamic regime");
+    }
     check.at("motion").unused(boundary.has_motion && !scene.physics.deforming, "a rigid ground");
     check.at("motionX").unused(column && x_given, "a column");
     const bool valued = boundary.has_motion && (boundary.motion == MotionCondition::displacement ||
@@ -130,8 +160,9 @@ void check_held(const Check& check, const Scene& scene) {
         const bool roller = boundary.motion == MotionCondition::roller;
         const bool moved = boundary.motion == MotionCondition::displacement;
         const bool upright = boundary.side == "left" || boundary.side == "right";
-        x_held |= fixed || (roller && boundary.side != "base") || (moved && is_given(boundary.motion_x));
-        y_held |= fixed || (roller && !upright) || (moved && is_given(boundary.motion_y));
+        const bool rubs = boundary.motion == MotionCondition::friction;
+        x_held |= fixed || rubs || (roller && boundary.side != "base") || (moved && is_given(boundary.motion_x));
+        y_held |= fixed || (rubs && !upright) || (roller && !upright) || (moved && is_given(boundary.motion_y));
     }
     check.require(
         x_held,
@@ -202,7 +233,10 @@ void check_boundaries(const Check& scene_check, const Scene& scene) {
         check_motion(check, boundary, scene);
     }
     check_overlaps(scene_check, scene, outline);
-    if (scene.physics.deforming) check_held(scene_check.at("boundaries"), scene);
+    const bool from_equilibrium = scene.physics.regime == MotionRegime::quasi_static ||
+                                  scene.initial.stress == InitialStress::gravity ||
+                                  scene.initial.stress == InitialStress::elastic;
+    if (scene.physics.deforming && from_equilibrium) check_held(scene_check.at("boundaries"), scene);
 }
 
 void check_surface(const Check& scene_check, const Scene& scene) {

@@ -107,8 +107,31 @@ void check_strength(const Check& check, const Strength& strength) {
                   "has neither cohesion nor friction; must have one");
 }
 
-void check_solid(const Check& check, const Solid& solid) {
+void check_softening(const Check& check, const Solid& solid, bool is_dynamic) {
+    const Softening& softening = solid.softening;
+    const bool any = given(softening.residual_cohesion) || given(softening.residual_friction_angle) ||
+                     given_positive(softening.slip);
+    if (!any) return;
+    if (solid.model == SolidModel::elastic || !is_dynamic)
+        return check.unused(true, is_dynamic ? name(solid.model) : "a ground whose regime is not dynamic");
+    check.at("residualCohesion").needed(given(softening.residual_cohesion), "softening");
+    check.at("residualFrictionAngle").needed(given(softening.residual_friction_angle), "softening");
+    check.at("slip").needed(given_positive(softening.slip), "softening");
+    check.require(!(softening.residual_cohesion == 0 && softening.residual_friction_angle == 0),
+                  "has neither cohesion nor friction; must have one");
+    check.at("residualCohesion")
+        .require(!(softening.residual_cohesion > solid.strength.cohesion),
+                 "= " + value_text(softening.residual_cohesion) + " Pa: must be at most the cohesion, " +
+                     value_text(solid.strength.cohesion) + " Pa");
+    check.at("residualFrictionAngle")
+        .require(!(softening.residual_friction_angle > solid.strength.friction_angle),
+                 "= " + value_text(softening.residual_friction_angle) +
+                     " degrees: must be at most the friction angle, " + value_text(solid.strength.friction_angle));
+}
+
+void check_solid(const Check& check, const Solid& solid, bool is_dynamic) {
     const std::string model = name(solid.model);
+    check_softening(check.at("softening"), solid, is_dynamic);
     check.at("youngModulus").needed(given_positive(solid.young_modulus), model);
     check.at("poissonRatio").needed(given(solid.poisson_ratio), model);
     if (solid.model == SolidModel::mohr_coulomb) {
@@ -136,7 +159,7 @@ void check_soil(const Check& check, const Soil& soil, const Physics& physics) {
     }
     if (physics.deforming) {
         check.at("dryDensity").needed(given(soil.dry_density), "a skeleton that deforms");
-        check_solid(check.at("solid"), soil.solid);
+        check_solid(check.at("solid"), soil.solid, physics.regime == MotionRegime::dynamic);
     }
 }
 

@@ -20,6 +20,7 @@ void fields(auto& visit, Is<Physics> auto& physics) {
     visit("water", physics.water);
     visit("deforming", physics.deforming);
     visit("stress", physics.stress);
+    visit("regime", physics.regime);
 }
 
 void fields(auto& visit, Is<Water> auto& water) {
@@ -71,6 +72,12 @@ void fields(auto& visit, Is<Strength> auto& strength) {
     visit("frictionGain", strength.friction_gain);
 }
 
+void fields(auto& visit, Is<Softening> auto& softening) {
+    visit("residualCohesion", softening.residual_cohesion);
+    visit("residualFrictionAngle", softening.residual_friction_angle);
+    visit.positive("slip", softening.slip);
+}
+
 void fields(auto& visit, Is<Solid> auto& solid) {
     visit("model", solid.model);
     visit.positive("youngModulus", solid.young_modulus);
@@ -78,6 +85,7 @@ void fields(auto& visit, Is<Solid> auto& solid) {
     visit("strength", solid.strength);
     visit("dilationAngle", solid.dilation_angle);
     visit("tensileStrength", solid.tensile_strength);
+    visit("softening", solid.softening);
 }
 
 void fields(auto& visit, Is<Soil> auto& soil) {
@@ -149,6 +157,7 @@ void fields(auto& visit, Is<Boundary> auto& boundary) {
     visit.optional("motion", boundary.has_motion, boundary.motion);
     visit("motionX", boundary.motion_x);
     visit("motionY", boundary.motion_y);
+    visit("frictionAngle", boundary.friction_angle);
 }
 
 void fields(auto& visit, Is<RainZone> auto& zone) {
@@ -180,6 +189,8 @@ void fields(auto& visit, Is<Initial> auto& initial) {
 
 void fields(auto& visit, Is<Numerics> auto& numerics) { visit("tolerance", numerics.tolerance); }
 
+void fields(auto& visit, Is<Dynamics> auto& dynamics) { visit.positive("cellSize", dynamics.cell_size); }
+
 void fields(auto& visit, Is<Schedule> auto& schedule) {
     visit("duration", schedule.duration);
     visit("step", schedule.step);
@@ -203,6 +214,7 @@ void fields(auto& visit, Is<Scene> auto& scene) {
     visit("surface", scene.surface);
     visit("initial", scene.initial);
     visit("numerics", scene.numerics);
+    visit("dynamics", scene.dynamics);
     visit("schedule", scene.schedule);
     visit("probes", scene.probes);
 }

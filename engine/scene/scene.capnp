@@ -64,6 +64,8 @@ struct Scene {
   # What a host does that only follows the scene; other hosts have a clock of their own and need none.
   probes @12 :List(Probe);
   # Places with a history.
+  dynamics @13 :Dynamics;
+  # How the motion of a dynamic ground is computed.
 }
 
 struct Physics {
@@ -74,6 +76,17 @@ struct Physics {
   # Whether the soil's skeleton moves; false: rigid, and no boundary may say anything on motion.
   stress @2 :StressMeasure = net;
   # The stress that deforms the skeleton and decides on its strength.
+  regime @3 :Regime = quasiStatic;
+  # How the skeleton moves.
+}
+
+enum Regime {
+  quasiStatic @0;
+  # From equilibrium to equilibrium, without inertia: for ground that stands.
+  dynamic @1;
+  # By its momentum, with inertia and motion of any size: for ground that fails, slides and comes to rest. So far of dry plane
+  # ground that deforms, between walls: each of `base`, `left` and `right` with a `motion` is a plane wall along an axis, which goes on
+  # beyond the ground. Ground that leaves a side without a wall moves freely.
 }
 
 enum StressMeasure {
@@ -208,6 +221,19 @@ struct Solid {
   # At most the friction angle.
   tensileStrength @5 :Float64 = inf $limits(unit = "Pa", low = 0, high = inf);
   # Largest tensile principal stress; left out: as much as the cone of Mohr-Coulomb bears.
+  softening @6 :Softening;
+  # How its strength falls with slip, for `mohrCoulomb` in a dynamic ground.
+}
+
+struct Softening {
+  # Cohesion and friction fall from those of the strength to residual ones, in proportion to the slip on a shear band, and stay there.
+  # The slip is the plastic shear strain times sqrt(3) times the size of a cell, so that what a band dissipates does not depend on that.
+  residualCohesion @0 :Float64 = nan $limits(unit = "Pa", low = 50, high = 1e10, orZero = true, slips = .pressureSlips);
+  # Required, at most the cohesion.
+  residualFrictionAngle @1 :Float64 = nan $limits(unit = "degrees", low = 1, high = 60, orZero = true, slips = .angleSlips);
+  # Required, at most the friction angle.
+  slip @2 :Float64 = nan $limits(unit = "m", low = 1e-6, high = 1e3, slips = .lengthSlips);
+  # Required: slip at which the strength is the residual one.
 }
 
 enum SolidModel {
@@ -350,6 +376,8 @@ struct Boundary {
   # For `displacement` (m) and `traction` (Pa): along x; left out: free in this direction.
   motionY @10 :Series;
   # For `displacement` (m) and `traction` (Pa): along y; left out: free in this direction.
+  frictionAngle @11 :Float64 = nan $limits(unit = "degrees", low = 1, high = 60, orZero = true, slips = .angleSlips);
+  # Required for `friction`.
 }
 
 enum FlowCondition {
@@ -380,6 +408,9 @@ enum MotionCondition {
   # The displacement since the start is motionX, motionY, m.
   traction @5;
   # The traction is motionX, motionY, Pa.
+  friction @6;
+  # A wall of a dynamic ground, which the ground may leave and slide along, held by Coulomb's friction of the angle frictionAngle. In the
+  # equilibrium at the start it holds as `fixed` on the base, as `roller` on the left and the right.
 }
 
 struct Series {
@@ -448,17 +479,27 @@ enum InitialFlow {
 
 enum InitialStress {
   gravity @0;
-  # Equilibrium found by turning gravity on.
+  # Equilibrium found by turning gravity on. A ground that does not stand has none.
   k0 @1;
-  # Vertical stress from the weight above, horizontal stress by its ratio.
+  # Vertical stress from the weight above, horizontal stress by its ratio; brought into equilibrium, but in a dynamic ground.
   zero @2;
   # None.
+  elastic @3;
+  # Gravity turned on elastically: for a dynamic ground, which need not stand. What its strength does not bear is let go in the
+  # first moment.
 }
 
 struct Numerics {
   # Accuracy.
   tolerance @0 :Float64 = 1e-3 $limits(low = 1e-12, high = 0.1);
   # Error allowed in saturation per unit of its range, and in pressure relative to the scene's own.
+}
+
+struct Dynamics {
+  # The background grid of a dynamic ground, and its material points, two a cell and direction.
+  cellSize @0 :Float64 = nan $limits(unit = "m", low = 1e-4, high = 1e3, slips = .lengthSlips);
+  # Width and height of a cell. Required for a dynamic ground. Taken a little smaller where `left` and `right` are walls, so that they lie a
+  # whole number of cells apart.
 }
 
 struct Schedule {

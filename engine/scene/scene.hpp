@@ -96,7 +96,7 @@ struct Ground {
 /// The sides every ground has. A mesh file may name more (its physical lines).
 ///   base, left, right, surface (all the rest)
 enum class FlowCondition { impermeable, pressure, hydrostatic, flux, surface };
-enum class MotionCondition { free, roller, fixed, displacement, traction };
+enum class MotionCondition { free, roller, fixed, displacement, traction, friction };
 
 /// What holds on a part of one side. A part of a side that no boundary names is impermeable and free, but the surface, which
 /// takes rain, ponds and seeps unless a boundary says otherwise.
@@ -115,6 +115,7 @@ struct Boundary {
     MotionCondition motion = MotionCondition::free;
     Series motion_x;  ///< displacement: m; traction: Pa; empty: free in this direction
     Series motion_y;
+    double friction_angle = unset;  ///< degrees, friction only
 };
 
 /// A part of the ground surface with a rain of its own. Rain is a volume per horizontal area, m/s, constant from each time to the
@@ -136,7 +137,7 @@ struct Surface {
 // --- initial state, numerics, schedule -------------------------------------------------------------------------------
 
 enum class InitialFlow { suction, saturation, hydrostatic, steady };
-enum class InitialStress { gravity, k0, zero };
+enum class InitialStress { gravity, k0, zero, elastic };
 
 struct Initial {
     InitialFlow flow = InitialFlow::hydrostatic;
@@ -151,16 +152,25 @@ struct Initial {
 
 enum class StressMeasure { net, bishop };
 
+/// dynamic: by momentum, on a Cartesian grid.
+enum class MotionRegime { quasi_static, dynamic };
+
 /// What the scene's physics is; what it does not name is left out of the engine.
 struct Physics {
     bool water = true;      ///< false: dry
     bool deforming = true;  ///< false: rigid skeleton
     StressMeasure stress = StressMeasure::net;
+    MotionRegime regime = MotionRegime::quasi_static;
 };
 
 struct Numerics {
     double tolerance =
         1e-3;  ///< error allowed in saturation per unit of its range, and in pressure relative to the scene's own
+};
+
+/// Of a dynamic ground.
+struct Dynamics {
+    double cell_size = 0;  ///< m
 };
 
 /// What a host that only follows the scene (the runner) does.
@@ -187,6 +197,7 @@ struct Scene {
     Surface surface;
     Initial initial;
     Numerics numerics;
+    Dynamics dynamics;
     Schedule schedule;
     std::vector<Probe> probes;
 };

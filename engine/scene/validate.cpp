@@ -9,6 +9,21 @@
 namespace talus {
 namespace {
 
+/// What a dynamic ground cannot do yet.
+void check_regime(const Check& check, const Scene& scene) {
+    const Check cell_size = check.at("dynamics").at("cellSize");
+    if (scene.physics.regime != MotionRegime::dynamic)
+        return cell_size.unused(given_positive(scene.dynamics.cell_size), "a ground whose regime is not dynamic");
+    cell_size.needed(given_positive(scene.dynamics.cell_size), "a dynamic ground");
+    const Check physics = check.at("physics");
+    physics.at("water").require(!scene.physics.water,
+                                "= true: must be false where the regime is dynamic; pore water in a dynamic ground is "
+                                "not supported yet");
+    physics.at("deforming").require(scene.physics.deforming, "= false: must be true where the regime is dynamic");
+    physics.at("regime").require(scene.ground.kind != GroundKind::column,
+                                 "= dynamic: must be quasiStatic in a column; a dynamic ground is a section or a mesh");
+}
+
 void check_physics(const Check& check, const Scene& scene) {
     const Physics& physics = scene.physics;
     check.at("physics").require(physics.water || physics.deforming,
@@ -19,6 +34,7 @@ void check_physics(const Check& check, const Scene& scene) {
     check.at("gravity").require(
         !(physics.water && scene.gravity == 0),
         "= 0 m/s2: must be above 0 where there is water, whose weight defines the conductivity");
+    check_regime(check, scene);
     check.at("name").require(scene.name.find_first_of("/\\") == std::string::npos,
                              "'" + scene.name + "': must have no slash; files are named after it");
 }
@@ -74,6 +90,9 @@ void check_initial_stress(const Check& check, const Scene& scene) {
         check.at("k0").unused(given(initial.k0), "a rigid ground");
         return;
     }
+    check.at("stress").require(
+        initial.stress != InitialStress::elastic || scene.physics.regime == MotionRegime::dynamic,
+        "= elastic: must be gravity, k0 or zero where the regime is not dynamic");
     check.at("k0").used(initial.stress == InitialStress::k0, given(initial.k0),
                         "the initial stress " + name_of<schema::InitialStress>(initial.stress));
 }

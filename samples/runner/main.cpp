@@ -37,6 +37,9 @@ int dispatch(int argc, char** argv) {
     run->add_option("--tolerance", settings.tolerance, "error allowed in time, instead of the scene's");
     run->add_option("--step", settings.step, "step in s, instead of the scene's")->check(CLI::PositiveNumber);
 
+    run->add_option("--threads", settings.threads, "threads of a dynamic ground, 1 when left out")
+        ->check(CLI::PositiveNumber);
+
     std::string scene;
     CLI::App* check = app.add_subcommand("check", "Check a scene and say what it is");
     check->add_option("SCENE", scene, "scene file, JSON or Cap'n Proto")->required();

@@ -45,8 +45,9 @@ void Progress::show_fraction(double fraction) {
 void Progress::end_step(const talus_step_report& report) {
     const double rain = report.water_rain;
     const double missed = std::abs(report.water_residual);
-    water_ = rain > 0 ? formatted("water balance %.1e of the rain", missed / rain)
-                      : formatted("water balance %.1e m3/m", missed);
+    water_ = report.regime == TALUS_DYNAMIC ? formatted("fastest %.3g m/s", report.largest_velocity)
+             : rain > 0                     ? formatted("water balance %.1e of the rain", missed / rain)
+                                            : formatted("water balance %.1e m3/m", missed);
     const int tenth = static_cast<int>(10 * report.time / duration_);
     const bool due = Clock::now() - shown_ > std::chrono::milliseconds(100) || report.time >= duration_;
     if (terminal_ ? due : tenth > tenth_) show(report.time);

@@ -6,10 +6,18 @@
 
 namespace runner {
 
+namespace {
+
+const char* regime_name(int32_t regime) {
+    return regime == TALUS_DYNAMIC ? "dynamic" : regime == TALUS_QUASI_STATIC ? "quasi_static" : "equilibrium_lost";
+}
+
+}  // namespace
+
 Json report_json(const talus_step_report& report) {
     return {
         {"time", report.time},
-        {"regime", report.regime == TALUS_QUASI_STATIC ? "quasi_static" : "equilibrium_lost"},
+        {"regime", regime_name(report.regime)},
         {"flow_substeps", report.flow_substeps},
         {"flow_failures", report.flow_failures},
         {"flow_iterations", report.flow_iterations},
@@ -32,6 +40,15 @@ Json report_json(const talus_step_report& report) {
         {"seconds_flow", report.seconds_flow},
         {"seconds_motion", report.seconds_motion},
         {"seconds_total", report.seconds_total},
+        {"motion_substeps", report.motion_substeps},
+        {"kinetic_energy", report.kinetic_energy},
+        {"elastic_energy", report.elastic_energy},
+        {"potential_energy", report.potential_energy},
+        {"dissipated_energy", report.dissipated_energy},
+        {"peak_velocity", report.peak_velocity},
+        {"sliding_volume", report.sliding_volume},
+        {"front_x", report.front_x},
+        {"run_out", report.run_out},
     };
 }
 

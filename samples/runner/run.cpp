@@ -149,6 +149,7 @@ void write_report(const Run& run, const RunSettings& settings, const std::string
 talus_options options_for(const RunSettings& settings, Progress*& progress) {
     talus_options options = TALUS_OPTIONS_INIT;
     options.tolerance = settings.tolerance.value_or(0);
+    options.threads = settings.threads;
     options.progress = [](void* user, double fraction) -> int32_t {
         if (Progress* shown = *static_cast<Progress**>(user)) shown->show_fraction(fraction);
         return 0;

@@ -177,6 +177,7 @@ std::string file_name(const std::string& series, size_t index) {
 
 FieldFiles::FieldFiles(std::filesystem::path folder, const Json& description)
     : folder_(std::move(folder)),
+      has_mesh_(description.at("nodes") != 0),
       node_fields_(fields_at(description, "node", "node_position")),
       cell_fields_(fields_at(description, "cell", "")),
       point_fields_(fields_at(description, "point", "point_position")) {
@@ -185,7 +186,7 @@ FieldFiles::FieldFiles(std::filesystem::path folder, const Json& description)
 
 void FieldFiles::write(const Engine& engine) {
     const double time = talus_engine_time(engine.get());
-    add(ground_, time, vtu(engine, "node_position", mesh_cells(engine), node_fields_, cell_fields_));
+    if (has_mesh_) add(ground_, time, vtu(engine, "node_position", mesh_cells(engine), node_fields_, cell_fields_));
     const Cells points = vertices(rows_of(view(engine, "point_position")));
     add(points_, time, vtu(engine, "point_position", points, point_fields_, {}));
 }

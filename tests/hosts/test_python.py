@@ -126,6 +126,48 @@ class LeftOut(unittest.TestCase):
         self.assertLess(described["bytes"], self.described("full")[0]["bytes"])
 
 
+class Dynamic(unittest.TestCase):
+    """Ground that moves by its momentum."""
+
+    def heap(self, **options):
+        scene = json.loads((SCENES / "column_collapse.json").read_text())
+        scene["dynamics"]["cellSize"] = 0.01
+        return talus.Engine(talus.Scene.from_json(scene), **options)
+
+    def test_report_fields_and_probes(self):
+        with self.heap() as engine:
+            start = engine.read("point_position")
+            report = engine.step(0.2)
+            self.assertEqual(report["regime"], "dynamic")
+            self.assertGreater(report["run_out"], 0.02)
+            self.assertGreater(report["motion_substeps"], 100)
+            self.assertTrue(numpy.allclose(engine.read("point_position"), start + engine.read("displacement"), atol=1e-15))
+            speed = numpy.linalg.norm(engine.read("velocity"), axis=1)
+            self.assertEqual(report["largest_velocity"], speed.max())
+            self.assertLess(engine.history("corner", "displacement.y")[1][-1], -0.02)
+            with self.assertRaisesRegex(talus.UnknownName, "dynamic ground has no field 'pressure'"):
+                engine.view("pressure")
+            described = engine.describe()
+            self.assertEqual((described["physics"]["regime"], described["points"]), ("dynamic", len(start)))
+            self.assertLessEqual(described["bytes_a_point"], 160)
+
+    def test_raster_has_values_where_the_ground_is(self):
+        with self.heap() as engine:
+            engine.step(0.3)
+            drawn = engine.sample_raster("mobilised_strength", 0.005, 0.195, 0.01, -0.01, 50, 20)
+            self.assertTrue(numpy.isnan(drawn[0]).all())
+            self.assertFalse(numpy.isnan(drawn[-1, :15]).any())
+
+    def test_threads_change_no_bit(self):
+        hashes = set()
+        for threads in (1, 2):
+            with self.heap(threads=threads) as engine:
+                engine.step(0.1)
+                engine.step(0.1)
+                hashes.add(engine.hash())
+        self.assertEqual(len(hashes), 1)
+
+
 class Arrays(unittest.TestCase):
     def test_mesh_from_memory(self):
         scene = json.loads(json.dumps(COLUMN))

@@ -80,6 +80,12 @@ class Command(Folder):
         self.assertIn("file", done.stderr)
 
 
+# Sand that falls for a fifth of a second.
+HEAP = json.loads((SCENES / "column_collapse.json").read_text())
+HEAP["dynamics"]["cellSize"] = 0.01
+HEAP["schedule"] = {"duration": 0.2, "step": 0.05, "outputs": [0, 0.1, 0.2]}
+
+
 class Run(Folder):
     def test_what_a_run_leaves(self):
         out = self.folder / "out"
@@ -114,6 +120,24 @@ class Run(Folder):
             self.assertTrue(numpy.array_equal(fields.points["net_stress"], engine.read("net_stress")))
             self.assertTrue(numpy.array_equal(fields.cells["cell_soil"], engine.read("cell_soil")))
             self.assertTrue(numpy.array_equal(results.probes["A.pressure"], engine.history("A", "pressure")[1]))
+
+    def test_dynamic_ground(self):
+        out = self.folder / "out"
+        done = run("run", self.scene(HEAP), "--out", out, "--threads", 2)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("run-out", done.stdout)
+        self.assertNotIn("infiltrated", done.stdout)
+        self.assertFalse((out / "ground.pvd").exists())
+        results = talus.Results(out)
+        self.assertEqual(results.times, [0, 0.1, 0.2])
+        self.assertEqual(results.report["last"]["regime"], "dynamic")
+        with talus.Engine(talus.Scene.from_json(HEAP)) as engine:
+            for time_ in results.steps("time"):
+                engine.advance_to(time_)
+            self.assertEqual(f"{engine.hash() % 2**64:016x}", results.report["hash"])
+            points = results.fields(0.2).points
+            self.assertTrue(numpy.array_equal(points["position"][:, :2], engine.read("point_position")))
+            self.assertTrue(numpy.array_equal(points["point_soil"], engine.read("point_soil")))
 
     def test_interrupt_cancels_and_leaves_what_was_done(self):
         scene = json.loads((SCENES / "column.json").read_text())
@@ -160,7 +184,7 @@ class Run(Folder):
 
 class Plots(Folder):
     def test_plots(self):
-        for scene, plots in ((SMALL, {"contours", "histories", "water"}),
+        for scene, plots in ((HEAP, {"frames", "energy", "histories"}), (SMALL, {"contours", "histories", "water"}),
                              (json.loads((SCENES / "column.json").read_text()), {"profiles", "histories", "water"})):
             out = self.folder / scene["name"]
             run("run", self.scene(scene), "--out", out)

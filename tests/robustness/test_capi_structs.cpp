@@ -5,10 +5,11 @@
 #include <cstring>
 
 TEST_CASE("C API: sizes and offsets of the structs are as released") {
-    CHECK(sizeof(talus_options) == 48);
+    CHECK(sizeof(talus_options) == 56);
     CHECK(offsetof(talus_options, tolerance) == 8);
     CHECK(offsetof(talus_options, log) == 16);
     CHECK(offsetof(talus_options, progress_user) == 40);
+    CHECK(offsetof(talus_options, threads) == 48);
     CHECK(sizeof(talus_array) == 32);
     CHECK(offsetof(talus_array, count) == 24);
     CHECK(sizeof(talus_field) == 120);
@@ -16,11 +17,13 @@ TEST_CASE("C API: sizes and offsets of the structs are as released") {
     CHECK(offsetof(talus_field, strides) == 48);
     CHECK(offsetof(talus_field, data) == 80);
     CHECK(offsetof(talus_field, epoch) == 112);
-    CHECK(sizeof(talus_step_report) == 192);
+    CHECK(sizeof(talus_step_report) == 264);
     CHECK(offsetof(talus_step_report, time) == 8);
     CHECK(offsetof(talus_step_report, rain_substitutions) == 64);
     CHECK(offsetof(talus_step_report, water_residual) == 136);
     CHECK(offsetof(talus_step_report, seconds_total) == 184);
+    CHECK(offsetof(talus_step_report, motion_substeps) == 192);
+    CHECK(offsetof(talus_step_report, run_out) == 256);
     CHECK(sizeof(talus_event) == 48);
     CHECK(offsetof(talus_event, message) == 40);
     CHECK(sizeof(talus_history) == 40);

@@ -182,6 +182,10 @@ TEST_CASE("every choice has its name") {
     CHECK(boundary(R"("motion": "fixed")").motion == MotionCondition::fixed);
     CHECK(boundary(R"("motion": "displacement")").motion == MotionCondition::displacement);
     CHECK(boundary(R"("motion": "traction")").motion == MotionCondition::traction);
+    CHECK(boundary(R"("motion": "friction")").motion == MotionCondition::friction);
+    CHECK(read_json(R"({"physics": {"regime": "quasiStatic"}})").physics.regime == MotionRegime::quasi_static);
+    CHECK(read_json(R"({"physics": {"regime": "dynamic"}})").physics.regime == MotionRegime::dynamic);
+    CHECK(read_json(R"({"initial": {"stress": "elastic"}})").initial.stress == InitialStress::elastic);
     CHECK_FALSE(boundary(R"("motion": "unspecified")").has_motion);
 
     const auto initial = [](const std::string& field, const std::string& name) {

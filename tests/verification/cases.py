@@ -3,6 +3,7 @@
 import functools
 
 import column
+import dynamic_slides
 import engine_cases
 import explicit_motion
 import mandel
@@ -21,6 +22,8 @@ CASES = {
     "saturated_wave": explicit_motion.saturated_wave_rows,
     "wave_speeds": explicit_motion.standing_wave_rows,
     "column_explicit": explicit_motion.column_rows,
+    "column_collapse": dynamic_slides.collapse_rows,
+    "cohesive_slope": dynamic_slides.slope_rows,
     "slope_gentle": lambda: slopes.rows("slope_gentle"),
     "slope": lambda: slopes.rows("slope"),
     "slope_triangles": slopes.triangles_rows,

@@ -26,6 +26,7 @@ CELL = 2
 MESH = 3
 QUASI_STATIC = 0
 EQUILIBRIUM_LOST = 1
+DYNAMIC = 2
 SATURATED = 1
 PONDING_STARTED = 2
 PONDING_ENDED = 3
@@ -51,6 +52,8 @@ class talus_options(Structure):
         ("log_user", c_void_p),
         ("progress", talus_progress_callback),
         ("progress_user", c_void_p),
+        ("threads", c_int32),
+        ("reserved", c_int32),
     ]
 
 
@@ -107,6 +110,15 @@ class talus_step_report(Structure):
         ("seconds_flow", c_double),
         ("seconds_motion", c_double),
         ("seconds_total", c_double),
+        ("motion_substeps", c_int64),
+        ("kinetic_energy", c_double),
+        ("elastic_energy", c_double),
+        ("potential_energy", c_double),
+        ("dissipated_energy", c_double),
+        ("peak_velocity", c_double),
+        ("sliding_volume", c_double),
+        ("front_x", c_double),
+        ("run_out", c_double),
     ]
 
 

@@ -13,7 +13,7 @@ from .view import View
 
 _RAIN_POLICIES = {"reject": _api.RAIN_REJECT, "hold": _api.RAIN_HOLD, "zero": _api.RAIN_ZERO}
 _EVENTS = ("SATURATED", "PONDING_STARTED", "PONDING_ENDED", "SEEPAGE_STARTED", "LOSS_OF_EQUILIBRIUM", "RAIN_ENDED")
-_REGIMES = ("QUASI_STATIC", "EQUILIBRIUM_LOST")
+_REGIMES = ("QUASI_STATIC", "EQUILIBRIUM_LOST", "DYNAMIC")
 _STEPS = ("OK", "CANCELLED", "OUT_OF_RAIN")
 
 
@@ -77,14 +77,16 @@ class Engine:
     rain_policy  what to do with a NaN or negative rate: "reject" (InvalidArgument), "hold" the last good one, "zero"
     log          called with (level, text)
     progress     called within steps with the fraction done; a true result cancels
+    threads      of a dynamic ground; results do not depend on it
 
     Used by one thread at a time; cancel() and time by any. Calls release the GIL.
     """
 
-    def __init__(self, scene, tolerance=None, rain_policy="reject", log=None, progress=None):
+    def __init__(self, scene, tolerance=None, rain_policy="reject", log=None, progress=None, threads=1):
         callbacks = _Callbacks(log, progress)
         options = begun(_api.talus_options)
         options.tolerance = tolerance or 0.0
+        options.threads = threads
         options.rain_policy = _RAIN_POLICIES[rain_policy]
         options.log, options.progress = callbacks.log, callbacks.progress
         pointer = c_void_p()

@@ -23,19 +23,25 @@ class Fields:
 
     nodes, cells, points   dicts of the fields at each; "position" of nodes and points among them
     corners                the cells' nodes, all in a row; corners[ends[c-1]:ends[c]] are those of cell c
+    A dynamic ground has points alone.
     """
 
     def __init__(self, time, ground_file, points_file):
         self.time = time
+        self.nodes, self.cells, self.corners, self.ends = {}, {}, (), ()
+        if ground_file is not None:
+            self._read_mesh(ground_file)
+        piece = ElementTree.parse(points_file).find(".//Piece")
+        self.points = {a.get("Name"): _array(a) for a in piece.find("PointData")}
+        self.points["position"] = _array(piece.find("Points/DataArray"))
+
+    def _read_mesh(self, ground_file):
         piece = ElementTree.parse(ground_file).find(".//Piece")
         self.nodes = {a.get("Name"): _array(a) for a in piece.find("PointData")}
         self.nodes["position"] = _array(piece.find("Points/DataArray"))
         self.cells = {a.get("Name"): _array(a) for a in piece.find("CellData")}
         mesh = {a.get("Name"): _array(a) for a in piece.find("Cells")}
         self.corners, self.ends = mesh["connectivity"], mesh["offsets"]
-        piece = ElementTree.parse(points_file).find(".//Piece")
-        self.points = {a.get("Name"): _array(a) for a in piece.find("PointData")}
-        self.points["position"] = _array(piece.find("Points/DataArray"))
 
     def at_nodes(self, name):
         """A field at the nodes. One of the points is averaged: each cell has a point for each of its corners, in their order."""
@@ -61,7 +67,7 @@ class Results:
         self.report = json.loads((self.folder / "report.json").read_text())
         self.probes = self._read_probes()
         self._ground, self._points = self._series("ground"), self._series("points")
-        self.times = list(self._ground)
+        self.times = list(self._points)
 
     def _read_probes(self):
         path = self.folder / "probes.csv"
@@ -72,12 +78,15 @@ class Results:
         return dict(zip(names, numpy.array(rows, float).T))
 
     def _series(self, name):
-        sets = ElementTree.parse(self.folder / f"{name}.pvd").iter("DataSet")
+        path = self.folder / f"{name}.pvd"
+        if not path.exists():
+            return {}
+        sets = ElementTree.parse(path).iter("DataSet")
         return {float(entry.get("timestep")): self.folder / entry.get("file") for entry in sets}
 
     def fields(self, time):
         """The fields at one of the times."""
-        return Fields(time, self._ground[time], self._points[time])
+        return Fields(time, self._ground.get(time), self._points[time])
 
     def steps(self, name):
         """A number of the step reports, one a step."""

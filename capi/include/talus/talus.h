@@ -84,7 +84,8 @@ typedef int32_t talus_status;
 #define TALUS_MESH 3              /* or rows of their own: how cells join nodes */
 
 #define TALUS_QUASI_STATIC 0      /* regime: the ground is in equilibrium; */
-#define TALUS_EQUILIBRIUM_LOST 1  /* failure was found: the skeleton stands as it was, the flow goes on */
+#define TALUS_EQUILIBRIUM_LOST 1  /* failure was found: the skeleton stands as it was, the flow goes on; */
+#define TALUS_DYNAMIC 2           /* or the ground moves by its momentum, as the scene's physics.regime says */
 
 #define TALUS_SATURATED 1         /* kind of an event: the last pore of the ground filled */
 #define TALUS_PONDING_STARTED 2   /* water stands on the surface, or runs off */
@@ -116,8 +117,10 @@ typedef struct talus_options {
     void *log_user;
     talus_progress_callback progress;  /* 0: none */
     void *progress_user;
+    int32_t threads;                   /* of a dynamic ground; 0: one. Results do not depend on it */
+    int32_t reserved;
 } talus_options;
-#define TALUS_OPTIONS_INIT { sizeof(talus_options), 0, 0.0, 0, 0, 0, 0 }
+#define TALUS_OPTIONS_INIT { sizeof(talus_options), 0, 0.0, 0, 0, 0, 0, 0, 0 }
 
 /* An array of the host's that stands for an entry of a scene's JSON text, see talus_scene_from_json_with_arrays. */
 typedef struct talus_array {
@@ -149,7 +152,7 @@ typedef struct talus_field {
    rain = infiltrated + run_off;  stored - initial = infiltrated + inflow - seepage - drained + residual. */
 typedef struct talus_step_report {
     int32_t struct_size;
-    int32_t regime;                    /* TALUS_QUASI_STATIC or TALUS_EQUILIBRIUM_LOST */
+    int32_t regime;                    /* TALUS_QUASI_STATIC ... */
     double time;                       /* s, after the step */
     int64_t flow_substeps;             /* of this step */
     int64_t flow_failures;             /* substeps that were tried again, smaller */
@@ -168,14 +171,24 @@ typedef struct talus_step_report {
     double water_initial;              /* in the pores and ponded, at the start */
     double water_residual;             /* what the balance misses */
     double largest_displacement;       /* m, since the start */
-    double largest_velocity;           /* m/s, mean over the step */
+    double largest_velocity;           /* m/s, mean over the step; of a dynamic ground: of a point, at the step's end */
     double least_factor_of_safety;     /* least local one; 0 where none is known */
     double seconds_flow;               /* wall seconds of this step */
     double seconds_motion;
     double seconds_total;
+    int64_t motion_substeps;           /* this and what follows: of a dynamic ground, else 0; per metre of thickness */
+    double kinetic_energy;             /* J, of the points' velocity */
+    double elastic_energy;             /* J, of their stress */
+    double potential_energy;           /* J, of their weight above y = 0 */
+    double dissipated_energy;          /* J: what the sum of the three has lost since the start */
+    double peak_velocity;              /* m/s, largest of a point in the step, looked at every few substeps */
+    double sliding_volume;             /* m3, of the points displaced by more than a cell's size since the start */
+    double front_x;                    /* m, of the foremost of these, in the direction that they go on the whole */
+    double run_out;                    /* m: so far in front of where the foremost of these lay at the start it lies */
 } talus_step_report;
 #define TALUS_STEP_REPORT_INIT { sizeof(talus_step_report), 0, 0.0, 0, 0, 0, 0, 0, 0, 0, \
-    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }
+    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, \
+    0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 }
 
 typedef struct talus_event {
     int32_t struct_size;

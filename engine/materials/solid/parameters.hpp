@@ -24,6 +24,13 @@ struct Strength {
     double friction_gain = 0;           ///< degrees, exponential only
 };
 
+/// How the strength falls with the slip on a shear band. Without a slip it does not.
+struct Softening {
+    double residual_cohesion = std::numeric_limits<double>::quiet_NaN();        ///< Pa
+    double residual_friction_angle = std::numeric_limits<double>::quiet_NaN();  ///< degrees
+    double slip = 0;                                                            ///< m, at which they are reached
+};
+
 struct Solid {
     SolidModel model = SolidModel::mohr_coulomb;
     double young_modulus = 0;                                           ///< Pa
@@ -31,6 +38,7 @@ struct Solid {
     Strength strength;                                                  ///< mohr_coulomb only
     double dilation_angle = 0;                                          ///< degrees, mohr_coulomb only
     double tensile_strength = std::numeric_limits<double>::infinity();  ///< Pa; infinite: the cone's apex alone
+    Softening softening;                                                ///< mohr_coulomb only
 };
 
 }  // namespace talus

@@ -16,6 +16,8 @@ constexpr int32_t margin =
 Arrangement::Arrangement(int32_t threads)
     : threads_(threads > 1 ? std::make_unique<tbb::task_arena>(threads) : nullptr) {}
 
+bool Arrangement::bears(double cells) { return cells <= margin; }
+
 bool Arrangement::is_outgrown(double cells) const { return drift_ + cells > margin; }
 
 /// Points by strips of rows, in a strip by columns, in a column by cells; points of one cell keep their order.

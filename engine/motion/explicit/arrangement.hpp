@@ -30,6 +30,9 @@ public:
     /// Arranges points, and gives the grid room about them, by whole cells; it only grows. True: it grew, and what nodes hold must move.
     bool arrange(FreePoints& points, Grid& grid);
 
+    /// Whether arranging anew would do for points that move by `cells` in one step; not where that is no number.
+    [[nodiscard]] static bool bears(double cells);
+
     /// Whether points that may move by `cells` more would leave the room they were arranged with.
     [[nodiscard]] bool is_outgrown(double cells) const;
     void drift(double cells) { drift_ += cells; }
@@ -71,7 +74,7 @@ void move_nodes(std::vector<Value>& values, const Grid& old, const Grid& grid) {
     };
     const auto columns = static_cast<size_t>(grid.cells[0]), old_columns = static_cast<size_t>(old.cells[0]);
     std::vector<Value> moved(grid.nodes());
-    for (size_t row = 0; row < values.size() / std::max(old_columns, size_t{1}); ++row) {
+    for (size_t row = 0; row < static_cast<size_t>(old.cells[1]); ++row) {
         const auto from = values.begin() + static_cast<std::ptrdiff_t>(row * old_columns);
         std::copy(from, from + static_cast<std::ptrdiff_t>(old_columns),
                   moved.begin() + static_cast<std::ptrdiff_t>((row + shift(1)) * columns + shift(0)));

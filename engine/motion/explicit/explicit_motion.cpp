@@ -15,21 +15,25 @@ ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double grav
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
     nodes_.gravity = gravity;
+    nodes_.least_mass =
+        points_.count > 0 ? *std::min_element(points_[solid_mass], points_[solid_mass] + points_.count) : 0;
+    restart();
+}
+
+void ExplicitMotion::restart() {
+    const Walls& walls = nodes_.walls;
     nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
-    for (size_t p = 0; p < points_.count; ++p) {
-        const Elasticity& elastic = soils_[static_cast<size_t>(points_.soil[p])].elastic;
-        const double density = points_[solid_mass][p] / points_[point_volume][p];
-        wave_speed_ = std::max(wave_speed_, std::sqrt((elastic.lame + 2 * elastic.shear) / density));
-    }
+    nodes_.grid.cells = {};
     arrange_points();
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
 
-void ExplicitMotion::step(double dt, bool is_last) {
+bool ExplicitMotion::step(double dt, bool is_last) {
     arrangement_.for_each_strip([&](Strip strip) { stress_and_forces(strip, dt); });
     nodes_.end_step(dt);
-    const double drift = dt * nodes_.largest_speed() / nodes_.grid.cell_size;
+    const double drift = dt * nodes_.speed / nodes_.grid.cell_size;
+    if (!arrangement_.bears(drift)) return false;
     if (arrangement_.is_outgrown(drift)) arrange_points();
     arrangement_.drift(drift);
     arrangement_.for_each_strip([&](Strip strip) {
@@ -40,6 +44,7 @@ void ExplicitMotion::step(double dt, bool is_last) {
         }
     });
     nodes_.begin_step();
+    return true;
 }
 
 void ExplicitMotion::stress_and_forces(Strip strip, double dt) {
@@ -82,7 +87,7 @@ void ExplicitMotion::move_and_give(Strip strip, double dt) {
     }
 }
 
-/// The momenta of points that have a velocity of their own: at the start.
+/// The momenta of points that have a velocity of their own.
 void ExplicitMotion::give(Strip strip) {
     SplineBlock spline;
     GiftBlock gift;
@@ -109,6 +114,17 @@ void ExplicitMotion::arrange_points() {
         nodes_.force.assign(nodes_.grid.nodes(), {});
     }
     nodes_.spans = arrangement_.spans();
+    find_wave_speed();
+}
+
+/// Of the points as they are: ground that dilates becomes lighter, and its waves faster.
+void ExplicitMotion::find_wave_speed() {
+    wave_speed_ = 0;
+    for (size_t p = 0; p < points_.count; ++p) {
+        const Elasticity& elastic = soils_[static_cast<size_t>(points_.soil[p])].elastic;
+        const double density = points_[solid_mass][p] / points_[point_volume][p];
+        wave_speed_ = std::max(wave_speed_, std::sqrt((elastic.lame + 2 * elastic.shear) / density));
+    }
 }
 
 double ExplicitMotion::critical_step() const {

@@ -29,8 +29,12 @@ public:
                    FreePoints points, int32_t threads);
 
     /// Carries the points dt (s) on; dt is at most critical_step(). Where this is not the last of several steps, the points' velocity
-    /// is left to the nodes.
-    void step(double dt, bool is_last);
+    /// is left to the nodes. False: a velocity is no number, or carries a point across several cells, and the points were not moved.
+    bool step(double dt, bool is_last);
+
+    /// Makes all that the nodes hold from the points alone, whose velocity must be their own. What follows depends on nothing else, to
+    /// the last bit: points put back move as those that they are a copy of.
+    void restart();
 
     /// The time in which a wave crosses a cell that moves with the fastest node, times what the method bears of it, s.
     [[nodiscard]] double critical_step() const;
@@ -43,6 +47,7 @@ public:
 
 private:
     void arrange_points();
+    void find_wave_speed();
     void stress_and_forces(Strip strip, double dt);
     template <bool keeps>
     void move_and_give(Strip strip, double dt);
@@ -53,7 +58,7 @@ private:
     GridMotion nodes_;
     Arrangement arrangement_;
     bool yields_ = false;    // any soil
-    double wave_speed_ = 0;  // m/s, the fastest at the start
+    double wave_speed_ = 0;  // m/s, the fastest when the points were arranged
 };
 
 }  // namespace talus

@@ -21,6 +21,8 @@ struct NodeVector {
 
 struct GridMotion : WalledGrid {
     double gravity = 0;                  ///< m/s2, downwards
+    double least_mass = 0;               ///< kg, of a point
+    double speed = 0;                    ///< m/s, largest_speed() at the end of the step
     std::vector<NodeMomentum> momentum;  ///< of the points where they came to lie
     std::vector<NodeVector> velocity;
     std::vector<NodeVector> force;  ///< the weight at first, then the stress's too, N
@@ -31,7 +33,9 @@ struct GridMotion : WalledGrid {
     /// Velocities at the end of a step of dt (s). Momenta are zero afterwards.
     void end_step(double dt);
 
-    [[nodiscard]] double largest_speed() const;  ///< m/s
+    /// A bound of the speed that the nodes give a point, m/s; no number where a velocity is none. Nodes that only the rim of a spline reaches
+    /// have next to no mass and run away, but points see as little of them.
+    [[nodiscard]] double largest_speed() const;
 
 private:
     void mirror();

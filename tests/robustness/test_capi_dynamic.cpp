@@ -1,0 +1,240 @@
+// Dynamic ground through the C API: what hosts see of it, and steps that are undone to the last bit.
+#include "capi_host.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace {
+
+/// A heap of dry sand that falls down and spreads over a base with friction, to the right of a wall.
+const char* const heap_text = R"({
+    "name": "heap",
+    "physics": {"water": false, "regime": "dynamic"},
+    "soils": [{"name": "sand", "dryDensity": 1560, "porosity": 0.4,
+               "solid": {"youngModulus": 2e6, "poissonRatio": 0.3,
+                         "strength": {"model": "constant", "cohesion": 0, "frictionAngle": 31}}}],
+    "ground": {"section": {"terrain": [[0, 0.2], [0.1, 0.2]], "base": [[0, 0], [0.1, 0]], "layers": [{"soil": "sand"}],
+                           "columnWidth": 0.02, "surfaceCellHeight": 0.02, "growth": 1, "largestCellHeight": 0.02}},
+    "boundaries": [{"side": "base", "motion": "friction", "frictionAngle": 31}, {"side": "left", "motion": "roller"}],
+    "initial": {"stress": "k0", "k0": 0.5},
+    "dynamics": {"cellSize": 0.01},
+    "probes": [{"name": "corner", "place": [0.0975, 0.1975]}]
+})";
+
+/// A slope of dry clay whose face crosses the grid at an angle; it stands.
+const char* const slope_text = R"({
+    "name": "slope",
+    "physics": {"water": false, "regime": "dynamic"},
+    "soils": [{"name": "clay", "dryDensity": 1800, "porosity": 0.4,
+               "solid": {"youngModulus": 5e6, "poissonRatio": 0.3,
+                         "strength": {"model": "constant", "cohesion": 12e3, "frictionAngle": 30}}}],
+    "ground": {"section": {"terrain": [[0, 7], [6, 7], [11, 2], [16.2, 2]], "base": [[0, 0], [16.2, 0]],
+                           "layers": [{"soil": "clay"}], "columnWidth": 0.5, "surfaceCellHeight": 0.5, "growth": 1,
+                           "largestCellHeight": 0.5}},
+    "boundaries": [{"side": "base", "motion": "fixed"}, {"side": "left", "motion": "roller"},
+                   {"side": "right", "motion": "roller"}],
+    "dynamics": {"cellSize": 0.5}
+})";
+
+std::vector<double> read(const host::Engine& engine, const char* field) {
+    const talus_field shape = host::view(engine, field);
+    std::vector<double> values(static_cast<size_t>(shape.shape[0] * (shape.rank == 2 ? shape.shape[1] : 1)));
+    REQUIRE(talus_engine_read(engine.get(), field, static_cast<int64_t>(values.size()), values.data()) == TALUS_OK);
+    return values;
+}
+
+/// Cancels at the given call.
+struct Impatient {
+    int calls = 0;
+    int limit = 0;
+    static int32_t progress(void* user, double) {
+        auto* self = static_cast<Impatient*>(user);
+        return ++self->calls == self->limit ? 1 : 0;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("C API: a heap falls, spreads, and comes to rest; its energy goes into friction") {
+    const host::Engine engine = host::engine(heap_text);
+    talus_step_report report = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_report(engine.get(), &report) == TALUS_OK);
+    CHECK(report.regime == TALUS_DYNAMIC);
+    const double weight = 1560 * 9.81 * 0.02;
+    CHECK(report.potential_energy == doctest::Approx(weight * 0.1).epsilon(1e-12));
+    CHECK(report.kinetic_energy == 0);
+    CHECK(report.dissipated_energy == 0);
+    CHECK(report.run_out == 0);
+    const double start = report.potential_energy + report.elastic_energy;
+
+    REQUIRE(talus_engine_step(engine.get(), 0.15, &report) == TALUS_OK);
+    CHECK(report.motion_substeps > 100);
+    CHECK(report.peak_velocity > 0.3);
+    CHECK(report.peak_velocity >= report.largest_velocity);
+    CHECK(report.run_out > 0.01);
+
+    REQUIRE(talus_engine_step(engine.get(), 1.85, &report) == TALUS_OK);
+    CHECK(report.time == 2);
+    CHECK(report.largest_velocity < 0.02);
+    CHECK(report.kinetic_energy < 1e-4 * start);
+    CHECK(report.run_out > 0.1);
+    CHECK(report.run_out < 0.4);
+    CHECK(report.front_x == doctest::Approx(0.0975 + report.run_out).epsilon(1e-6));
+    CHECK(report.sliding_volume > 0.005);
+    CHECK(report.sliding_volume < 0.03);
+    CHECK(report.dissipated_energy > 0.3 * start);
+    const double rest = report.kinetic_energy + report.elastic_energy + report.potential_energy;
+    CHECK(rest + report.dissipated_energy == doctest::Approx(start).epsilon(1e-12));
+}
+
+TEST_CASE("C API: a dynamic step that was cancelled is undone to the last bit, and what follows is the same") {
+    Impatient impatient;
+    talus_options options = TALUS_OPTIONS_INIT;
+    options.progress = Impatient::progress;
+    options.progress_user = &impatient;
+    const host::Engine engine = host::engine(heap_text, &options);
+    const host::Engine undisturbed = host::engine(heap_text);
+    for (const host::Engine* each : {&engine, &undisturbed})
+        REQUIRE(talus_engine_step(each->get(), 0.1, nullptr) == TALUS_OK);
+    const int64_t before = host::hash(engine);
+    CHECK(before == host::hash(undisturbed));
+    impatient.limit = impatient.calls + 12;  // far enough for points to be arranged anew and for the grid to grow
+    CHECK(talus_engine_step(engine.get(), 1.0, nullptr) == TALUS_CANCELLED);
+    CHECK(impatient.calls == impatient.limit);
+    CHECK(host::hash(engine) == before);
+    CHECK(talus_engine_time(engine.get()) == 0.1);
+    for (const host::Engine* each : {&engine, &undisturbed})
+        REQUIRE(talus_engine_step(each->get(), 0.3, nullptr) == TALUS_OK);
+    CHECK(host::hash(engine) != before);
+    CHECK(host::hash(engine) == host::hash(undisturbed));
+}
+
+TEST_CASE("C API: a dynamic ground moves the same with one thread and with two") {
+    talus_options options = TALUS_OPTIONS_INIT;
+    const host::Engine one = host::engine(heap_text, &options);
+    options.threads = 2;
+    const host::Engine two = host::engine(heap_text, &options);
+    for (const double dt : {0.1, 0.2, 0.05}) {
+        REQUIRE(talus_engine_step(one.get(), dt, nullptr) == TALUS_OK);
+        REQUIRE(talus_engine_step(two.get(), dt, nullptr) == TALUS_OK);
+        CHECK(host::hash(one) == host::hash(two));
+    }
+    talus_engine* none = nullptr;
+    for (const int32_t threads : {-1, 100000}) {
+        options.threads = threads;
+        CHECK(talus_engine_create(host::scene(heap_text).get(), &options, &none) == TALUS_INVALID_ARGUMENT);
+        CHECK(host::contains(talus_last_error(), "options.threads"));
+    }
+}
+
+TEST_CASE("C API: a dynamic ground has fields of its points, in an order that does not change") {
+    const host::Engine engine = host::engine(heap_text);
+    const std::vector<double> start = read(engine, "point_position");
+    REQUIRE(start.size() == 2 * 800);
+    CHECK(host::view(engine, "point_position").location == TALUS_POINT);
+    REQUIRE(talus_engine_step(engine.get(), 0.3, nullptr) == TALUS_OK);
+    const std::vector<double> position = read(engine, "point_position"), displacement = read(engine, "displacement");
+    for (size_t i = 0; i < start.size(); ++i)
+        CHECK(position[i] - start[i] == doctest::Approx(displacement[i]).epsilon(1e-12));
+    CHECK(read(engine, "point_soil") == std::vector<double>(800, 0.0));
+    for (const double share : read(engine, "mobilised_strength")) {
+        CHECK(share >= 0);
+        CHECK(share <= 1);
+    }
+    talus_field field = TALUS_FIELD_INIT;
+    for (const char* name : {"node_position", "pressure", "cell_nodes", "strain", "colour"}) {
+        CHECK(talus_engine_view(engine.get(), name, &field) == TALUS_UNKNOWN_NAME);
+        CHECK(host::contains(talus_engine_error(engine.get()), name));
+    }
+}
+
+TEST_CASE("C API: places of a dynamic ground have the value of the nearest point, within a cell") {
+    const host::Engine engine = host::engine(heap_text);
+    REQUIRE(talus_engine_step(engine.get(), 0.3, nullptr) == TALUS_OK);
+    const std::vector<double> position = read(engine, "point_position"), velocity = read(engine, "velocity");
+    const std::vector<double> places{position[200] + 1e-5, position[201], 0.05, 5.0, std::nan(""), 0.0};
+    std::vector<double> values(6, 0.0);
+    CHECK(talus_engine_sample(engine.get(), "velocity", 3, places.data(), values.data()) == TALUS_OUTSIDE);
+    CHECK(values[0] == velocity[200]);
+    CHECK(values[1] == velocity[201]);
+    for (size_t k = 2; k < 6; ++k) CHECK(std::isnan(values[k]));
+}
+
+TEST_CASE("C API: a probe follows the point that was nearest at the start") {
+    const host::Engine engine = host::engine(heap_text);
+    REQUIRE(talus_engine_step(engine.get(), 0.2, nullptr) == TALUS_OK);
+    talus_history history = TALUS_HISTORY_INIT;
+    REQUIRE(talus_engine_probe_history(engine.get(), 0, "displacement.y", &history) == TALUS_OK);
+    REQUIRE(history.count == 2);
+    CHECK(history.value[0] == 0);
+    const std::vector<double> displacement = read(engine, "displacement");
+    CHECK(history.value[1] == displacement[2 * 799 + 1]);  // the last point is the one in the upper right corner
+    CHECK(history.value[1] < -0.05);
+    CHECK(talus_engine_add_probe(engine.get(), "far", 5, 5, nullptr) == TALUS_INVALID_ARGUMENT);
+    CHECK(talus_engine_add_probe(engine.get(), "near", 0.005, 0.005, nullptr) == TALUS_OK);
+}
+
+TEST_CASE("C API: a step of any length does what the motion needs, or is refused and changes nothing") {
+    const host::Engine engine = host::engine(heap_text);
+    talus_step_report report = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_step(engine.get(), 1e-9, &report) == TALUS_OK);
+    CHECK(report.motion_substeps == 1);
+    REQUIRE(talus_engine_advance_to(engine.get(), 0.01, &report) == TALUS_OK);
+    CHECK(talus_engine_time(engine.get()) == 0.01);
+    const int64_t before = host::hash(engine);
+    CHECK(talus_engine_step(engine.get(), 1e-19, nullptr) == TALUS_INVALID_ARGUMENT);
+    CHECK(host::hash(engine) == before);
+}
+
+TEST_CASE("C API: a dynamic ground that does not stand may start from an elastic stress, not from equilibrium") {
+    std::string text = heap_text;
+    const std::string k0 = R"("stress": "k0", "k0": 0.5)";
+    const size_t at = text.find(k0);
+    REQUIRE(at != std::string::npos);
+    talus_scene* scene = nullptr;
+    talus_engine* engine = nullptr;
+    REQUIRE(talus_scene_from_json(text.replace(at, k0.size(), R"("stress": "gravity")").c_str(), -1, &scene) ==
+            TALUS_OK);
+    CHECK(talus_engine_create(scene, nullptr, &engine) == TALUS_INVALID_SCENE);
+    CHECK(host::contains(talus_last_error(), "a dynamic ground may start from elastic, k0 or zero"));
+    talus_scene_release(scene);
+    text = heap_text;
+    const host::Engine elastic = host::engine(text.replace(at, k0.size(), R"("stress": "elastic")").c_str());
+    REQUIRE(talus_engine_step(elastic.get(), 0.1, nullptr) == TALUS_OK);
+}
+
+TEST_CASE("C API: a slope that stands in equilibrium stands in motion too") {
+    const host::Engine engine = host::engine(slope_text);
+    const char* description = nullptr;
+    REQUIRE(talus_engine_describe(engine.get(), &description) == TALUS_OK);
+    CHECK(host::contains(description, R"("regime":"dynamic")"));
+    CHECK(host::contains(description, R"("cell_size":0.490909090909)"));  // 33 cells between the walls
+    talus_step_report report = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_step(engine.get(), 1, &report) == TALUS_OK);
+    CHECK(report.peak_velocity < 0.05);          // without its stress it would fall at 1 m/s
+    CHECK(report.largest_displacement < 0.002);  // and settle by 70 mm
+    CHECK(report.sliding_volume == 0);
+    for (const double strain : read(engine, "plastic_strain")) CHECK(strain < 1e-3);
+}
+
+TEST_CASE("C API: the bonds of a column of clay break with slip, and it falls where it would have stood") {
+    std::string text = heap_text;
+    const std::string strength = R"("cohesion": 0, "frictionAngle": 31})";
+    const size_t at = text.find(strength);
+    REQUIRE(at != std::string::npos);
+    const auto run_out = [&](const std::string& clay) {
+        std::string changed = text;
+        const host::Engine engine = host::engine(changed.replace(at, strength.size(), clay).c_str());
+        talus_step_report report = TALUS_STEP_REPORT_INIT;
+        REQUIRE(talus_engine_step(engine.get(), 1, &report) == TALUS_OK);
+        return report.run_out;
+    };
+    const std::string bonds = R"("cohesion": 600, "frictionAngle": 20})";
+    const double standing = run_out(bonds);
+    const double breaking =
+        run_out(bonds + R"(, "softening": {"residualCohesion": 0, "residualFrictionAngle": 15, "slip": 0.001})");
+    CHECK(standing == 0);
+    CHECK(breaking > 0.2);
+}
