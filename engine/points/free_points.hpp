@@ -26,8 +26,9 @@ enum PointField : size_t {
     point_volume,  ///< m3 per metre of thickness
     solid_mass,    ///< kg per metre of thickness
     plastic_shear_strain,
-    dry_fields,  ///< so many has a dry ground
+    dry_fields,               ///< so many has a dry ground
     water_mass = dry_fields,  ///< kg per metre of thickness
+    water_due,                ///< that flows to the point in the step to come, kg
     liquid_velocity_x,        ///< m/s
     liquid_velocity_y,
     liquid_affine_xx,  ///< as the solid's, 1/s

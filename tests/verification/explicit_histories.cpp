@@ -149,7 +149,7 @@ void column_explicit(size_t cells) {
         points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
     }
     auto column = column_of<Filling::unsaturated>(ground, cells, gravity, std::move(points), {SaturationTable(soil)});
-    column.set_rain(1e-4);
+    column.set_rain([](double) { return 1e-4; });
     std::puts("[");
     double now = 0, initial = 0;
     for (size_t p = 0; p < column.points().count; ++p) initial += column.points()[water_mass][p];
@@ -167,7 +167,7 @@ void column_explicit(size_t cells) {
             height.push_back(mean(column.points()[position_y][low], column.points()[position_y][high]));
             pressure.push_back(mean(column.pressure(low), column.pressure(high)));
             saturation.push_back(mean(column.saturation(low), column.saturation(high)));
-            water += column.points()[water_mass][low] + column.points()[water_mass][high];
+            for (const size_t p : {low, high}) water += column.points()[water_mass][p] + column.points()[water_due][p];
         }
         const double missed = (water - initial - column.rained() + column.seepage()) / initial;
         std::printf("{\"time\": %.17g, \"steps\": %lld, \"missed\": %.17g,\n", time, static_cast<long long>(steps),

@@ -104,27 +104,30 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
     nodes_.walls = walls;
     nodes_.gravity = gravity;
     nodes_.liquid_density = water.density;
+    nodes_.least_mass =
+        points_.count > 0 ? *std::min_element(points_[solid_mass], points_[solid_mass] + points_.count) : 0;
+    restart();
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::restart() {
+    const Walls& walls = nodes_.walls;
     nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
-    for (size_t p = 0; p < points_.count; ++p) {
-        const auto soil = static_cast<size_t>(points_.soil[p]);
-        const double grains = points_[solid_mass][p] / (hydraulics_[soil].grain_density * points_[point_volume][p]);
-        const double frame = soils_[soil].elastic.lame + 2 * soils_[soil].elastic.shear;
-        const double fluid = water.bulk_modulus / (1 - grains);
-        // The sum of the squared speeds of the two waves without drag, which bounds both.
-        const double solid_density = points_[solid_mass][p] / points_[point_volume][p];
-        const double squares = (frame + grains * grains * fluid) / solid_density + water.bulk_modulus / water.density;
-        wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
-    }
+    nodes_.grid.cells = {};
+    restarted_ = true;
     arrange_points();
+    std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
 
 template <Filling filling>
-void ExplicitMixture<filling>::step(double dt, bool is_last) {
+bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     arrangement_.for_each_strip([&](Strip strip) { stress_and_forces(strip, dt); });
+    restarted_ = false;
     nodes_.end_step(dt);
-    const double drift = dt * nodes_.largest_speed() / nodes_.grid.cell_size;
+    const double drift = dt * nodes_.speed / nodes_.grid.cell_size;
+    if (!arrangement_.bears(drift)) return false;
     if (arrangement_.is_outgrown(drift)) arrange_points();
     arrangement_.drift(drift);
     arrangement_.for_each_strip([&](Strip strip) {
@@ -135,6 +138,23 @@ void ExplicitMixture<filling>::step(double dt, bool is_last) {
         }
     });
     nodes_.begin_step();
+    if (!is_last) return true;
+    arrangement_.for_each_strip([this](Strip strip) { owe_water(strip); });
+    return true;
+}
+
+/// What the flow of the last step brings to the points: they get it with the strain of the same time, in the next step.
+template <Filling filling>
+void ExplicitMixture<filling>::owe_water(Strip strip) {
+    SplineBlock spline;
+    VelocityBlock rates;
+    for (size_t first = strip.first; first < strip.last; first += block_size) {
+        const size_t count = std::min(block_size, strip.last - first);
+        spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
+        gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
+        for (size_t k = 0; k < count; ++k)
+            points_[water_due][first + k] = nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
+    }
 }
 
 template <Filling filling>
@@ -174,7 +194,10 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
         gather_gradient(nodes_.grid, nodes_.velocity, count, spline, gradient);
         gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
-        for (size_t k = 0; k < count; ++k) points_[water_mass][first + k] += dt * mass[k] * rates.y[k];
+        for (size_t k = 0; k < count; ++k) {
+            const double due = restarted_ ? points_[water_due][first + k] : nodes_.flow_time * mass[k] * rates.y[k];
+            points_[water_mass][first + k] += due;
+        }
         smooth_dilation(count, rates.x, gradient);
         set_elasticity(soils_, points_, first, count, material);
         strain_elastically(points_, first, count, dt, gradient, material);
@@ -187,8 +210,9 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
             return_stresses(points_, first, count, material);
         }
         for (size_t k = 0; k < count; ++k) {
+            const double borne = water_.pore_stress == PoreStress::bishop ? water.effective_saturation[k] : 0.0;
             const double pore_stress =
-                filling == Filling::saturated ? water.pressure[k] : std::max(water.pressure[k], 0.0);
+                filling == Filling::saturated || water.pressure[k] > 0 ? water.pressure[k] : borne * water.pressure[k];
             total_xx[k] = points_[stress_xx][first + k] - pore_stress;
             total_yy[k] = points_[stress_yy][first + k] - pore_stress;
         }
@@ -272,23 +296,60 @@ void ExplicitMixture<filling>::arrange_points() {
         nodes_.resize();
     }
     nodes_.spans = arrangement_.spans();
-    set_rain(rain_);
+    fall_rain();
+    find_wave_speed();
 }
 
 template <Filling filling>
-void ExplicitMixture<filling>::set_rain(double rate) {
-    rain_ = rate;
+void ExplicitMixture<filling>::set_rain(std::function<double(double)> rate) {
+    rain_ = std::move(rate);
+    fall_rain();
+}
+
+/// Onto the grid's columns that hold ground.
+template <Filling filling>
+void ExplicitMixture<filling>::fall_rain() {
     nodes_.rain.clear();
-    if (rate == 0) return;
-    nodes_.rain.assign(static_cast<size_t>(nodes_.grid.cells[0]), 0.0);
-    for (size_t p = 0; p < points_.count; ++p)
-        nodes_.rain[static_cast<size_t>(nodes_.grid.cell_of(points_[position_x][p], 0))] = rate * water_.density;
+    if (!rain_) return;
+    const Grid& grid = nodes_.grid;
+    nodes_.rain.assign(static_cast<size_t>(grid.cells[0]), 0.0);
+    for (size_t p = 0; p < points_.count; ++p) {
+        const int32_t column = grid.cell_of(points_[position_x][p], 0);
+        nodes_.rain[static_cast<size_t>(column)] =
+            water_.density * rain_(grid.corner[0] + (column + 0.5) * grid.cell_size);
+    }
+}
+
+/// Of the points as they are: the square root of the sum of the two waves' squares without drag, which bounds both.
+template <Filling filling>
+void ExplicitMixture<filling>::find_wave_speed() {
+    wave_speed_ = 0;
+    for (size_t p = 0; p < points_.count; ++p) {
+        const auto soil = static_cast<size_t>(points_.soil[p]);
+        const double solid_density = points_[solid_mass][p] / points_[point_volume][p];
+        const double grains = solid_density / hydraulics_[soil].grain_density;
+        const double frame = soils_[soil].elastic.lame + 2 * soils_[soil].elastic.shear;
+        const double fluid = water_.bulk_modulus / (1 - grains);
+        const double squares = (frame + grains * grains * fluid) / solid_density + water_.bulk_modulus / water_.density;
+        wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
+    }
 }
 
 template <Filling filling>
 double ExplicitMixture<filling>::critical_step() const {
     constexpr double share = 1.0;  // stable to 1.4: the bound of the speed is above any wave's
     return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.largest_speed());
+}
+
+template <Filling filling>
+Energies ExplicitMixture<filling>::energies() const {
+    Energies sum = energies_of(points_, soils_, nodes_.gravity);
+    for (size_t p = 0; p < points_.count; ++p) {
+        const double x = points_[liquid_velocity_x][p], y = points_[liquid_velocity_y][p];
+        sum.kinetic += 0.5 * points_[water_mass][p] * (x * x + y * y);
+        sum.potential += points_[water_mass][p] * nodes_.gravity * points_[position_y][p];
+    }
+    return sum;
 }
 
 template <Filling filling>

@@ -13,6 +13,7 @@
 #include "points/free_points.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace talus {
@@ -26,9 +27,13 @@ struct ExplicitHydraulics {
     bool weighs_suction = false;
 };
 
+/// What of the pore pressure the skeleton does not bear: max(p, 0), or S_e p (physics.md).
+enum class PoreStress { net, bishop };
+
 struct ExplicitWater {
     double density = 1000;      ///< kg/m3
     double bulk_modulus = 2e9;  ///< Pa
+    PoreStress pore_stress = PoreStress::net;
 };
 
 /// Saturated: every pore is full of water at all times. Unsaturated: the gas is at rest at zero pressure.
@@ -42,13 +47,15 @@ public:
                     std::vector<ExplicitHydraulics> hydraulics, std::vector<SaturationTable> tables,
                     const ExplicitWater& water, FreePoints points, int32_t threads);
 
-    /// As ExplicitMotion's.
-    void step(double dt, bool is_last);
+    /// As ExplicitMotion's. The water of the ground is the points' own and what is due to them.
+    bool step(double dt, bool is_last);
+    void restart();
     [[nodiscard]] double critical_step() const;
+    [[nodiscard]] Energies energies() const;  ///< of both phases; elastic: the skeleton's
 
     void set_edge_pressure(double pressure) { nodes_.edge_pressure = pressure; }  ///< Pa
-    /// Rain on all of the ground from now on, m/s.
-    void set_rain(double rate);
+    /// Rain from now on: a volume per horizontal area, m/s, at each x (m).
+    void set_rain(std::function<double(double x)> rate);
     [[nodiscard]] double rained() const { return nodes_.rained; }  ///< kg
     void set_immersed(bool immersed) { nodes_.immersed = immersed; }
     [[nodiscard]] double seepage() const { return nodes_.seepage; }  ///< kg
@@ -58,6 +65,7 @@ public:
     [[nodiscard]] double saturation(size_t point) const;
 
     [[nodiscard]] const FreePoints& points() const { return points_; }
+    [[nodiscard]] FreePoints& points() { return points_; }
     [[nodiscard]] const Grid& grid() const { return nodes_.grid; }
 
 private:
@@ -66,6 +74,9 @@ private:
     };
 
     void arrange_points();
+    void find_wave_speed();
+    void fall_rain();
+    void owe_water(Strip strip);
     void find_water(size_t first, size_t count, WaterBlock& water) const;
     void stress_and_forces(Strip strip, double dt);
     template <bool keeps>
@@ -79,9 +90,10 @@ private:
     FreePoints points_;
     GridMixture nodes_;
     Arrangement arrangement_;
-    bool yields_ = false;    // any soil
-    double rain_ = 0;        // m/s
-    double wave_speed_ = 0;  // m/s, the fastest at the start, were all pores full
+    bool restarted_ = false;  // and the points not yet got what is due
+    bool yields_ = false;     // any soil
+    std::function<double(double)> rain_;
+    double wave_speed_ = 0;  // m/s, the fastest when the points were arranged, were all pores full
 };
 
 extern template class ExplicitMixture<Filling::saturated>;

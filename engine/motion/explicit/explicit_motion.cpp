@@ -133,21 +133,20 @@ double ExplicitMotion::critical_step() const {
     return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.largest_speed());
 }
 
-Energies ExplicitMotion::energies() const {
+Energies energies_of(const FreePoints& points, const std::vector<ExplicitSoil>& soils, double gravity) {
     Energies sum;
-    for (size_t p = 0; p < points_.count; ++p) {
-        const double mass = points_[solid_mass][p];
-        sum.kinetic +=
-            0.5 * mass *
-            (points_[velocity_x][p] * points_[velocity_x][p] + points_[velocity_y][p] * points_[velocity_y][p]);
-        sum.potential += mass * nodes_.gravity * points_[position_y][p];
-        const Elasticity& elastic = soils_[static_cast<size_t>(points_.soil[p])].elastic;
-        const double xx = points_[stress_xx][p], yy = points_[stress_yy][p], zz = points_[stress_zz][p],
-                     xy = points_[stress_xy][p];
+    for (size_t p = 0; p < points.count; ++p) {
+        const double mass = points[solid_mass][p];
+        sum.kinetic += 0.5 * mass *
+                       (points[velocity_x][p] * points[velocity_x][p] + points[velocity_y][p] * points[velocity_y][p]);
+        sum.potential += mass * gravity * points[position_y][p];
+        const Elasticity& elastic = soils[static_cast<size_t>(points.soil[p])].elastic;
+        const double xx = points[stress_xx][p], yy = points[stress_yy][p], zz = points[stress_zz][p],
+                     xy = points[stress_xy][p];
         const double trace = xx + yy + zz;
         const double squares = xx * xx + yy * yy + zz * zz + 2 * xy * xy;
         const double spread = elastic.lame / (3 * elastic.lame + 2 * elastic.shear);
-        sum.elastic += points_[point_volume][p] * (squares - spread * trace * trace) / (4 * elastic.shear);
+        sum.elastic += points[point_volume][p] * (squares - spread * trace * trace) / (4 * elastic.shear);
     }
     return sum;
 }

@@ -22,6 +22,9 @@ struct Energies {
     double potential = 0;  ///< of their weight above y = 0
 };
 
+/// Of the solid.
+Energies energies_of(const FreePoints& points, const std::vector<ExplicitSoil>& soils, double gravity);
+
 class ExplicitMotion {
 public:
     /// The points' fields must be sized. Walls must lie a whole number of cells apart.
@@ -39,7 +42,7 @@ public:
     /// The time in which a wave crosses a cell that moves with the fastest node, times what the method bears of it, s.
     [[nodiscard]] double critical_step() const;
 
-    [[nodiscard]] Energies energies() const;
+    [[nodiscard]] Energies energies() const { return energies_of(points_, soils_, nodes_.gravity); }
 
     [[nodiscard]] const FreePoints& points() const { return points_; }
     [[nodiscard]] FreePoints& points() { return points_; }

@@ -66,12 +66,11 @@ void GridMixture::begin_step() {
 
 void GridMixture::end_step(double dt) {
     fold_forces();
-    seepage += seeping;
-    rained += raining;
-    seeping = raining = 0;
     for_each_node([this, dt](size_t i) { solve(i, dt); });
     if (!rain.empty()) rain_on(dt);
     mirror();
+    flow_time = dt;
+    speed = largest_speed();
     for_each_node([this](size_t i) {
         momentum[i] = {};
         liquid_momentum[i] = {};
@@ -117,7 +116,7 @@ void GridMixture::rain_on(double dt) {
         if (!(up > 0)) return;
         const double rate = rain[column] * grid.cell_size * up / width[column];
         returned[i] += rate;
-        raining += dt * rate;
+        rained += dt * rate;
     });
 }
 
@@ -152,7 +151,7 @@ void GridMixture::solve(size_t node, double dt) {
     if ((immersed || pressure > 0) && is_at_edge(node)) {
         const double rate = leaving({unit_weight * edge_height[node].x, unit_weight * edge_height[node].y});
         if (immersed || rate >= 0) {
-            seeping += dt * rate;
+            seepage += dt * rate;
             return;
         }
     }
@@ -169,13 +168,6 @@ void GridMixture::mirror() {
             (*field)[nodes.beyond] = {mirror.x * (*field)[nodes.inside].x, mirror.y * (*field)[nodes.inside].y};
         rates[nodes.beyond] = rates[nodes.inside];
     });
-}
-
-double GridMixture::largest_speed() const {
-    double largest = 0;
-    for_each_node(
-        [&](size_t i) { largest = std::max(largest, velocity[i].x * velocity[i].x + velocity[i].y * velocity[i].y); });
-    return std::sqrt(largest);
 }
 
 }  // namespace talus

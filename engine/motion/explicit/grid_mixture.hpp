@@ -36,6 +36,8 @@ struct GridMixture : WalledGrid {
     double gravity = 0;         ///< m/s2, downwards
     double liquid_density = 0;  ///< kg/m3
     double edge_pressure = 0;   ///< on the ground's edge, Pa
+    double least_mass = 0;      ///< kg, of a point's solid
+    double speed = 0;           ///< m/s, the solid's speed_bound() at the end of the step
     bool immersed = false;      ///< the edge stands in water without pressure: it may enter too
     double cell_volume() const { return grid.cell_size * grid.cell_size; }
 
@@ -51,15 +53,14 @@ struct GridMixture : WalledGrid {
     std::vector<NodeVector> edge_height;  ///< sum of V (y grad N + N grad y), the edge's y times its normal, m2
     std::vector<double> returned;         ///< F_j . e_j, kg/s
     std::vector<double> rain;             ///< onto each column of the grid that holds ground, kg/(m2 s); empty: none
-    double rained = 0;                    ///< that the points got so far, kg
-    double raining = 0;                   ///< what they will get in the next step, kg
-    double seepage = 0;                   ///< that left the points so far, kg
-    double seeping = 0;                   ///< what they will lose in the next step, kg
+    double flow_time = 0;                 ///< s that the rates of water are of: what points have not got yet
+    double rained = 0;                    ///< kg, in the steps ended
+    double seepage = 0;                   ///< kg, likewise; negative where an immersed ground drank
 
     void resize();
     void begin_step();
     void end_step(double dt);
-    [[nodiscard]] double largest_speed() const;
+    [[nodiscard]] double largest_speed() const { return speed_bound(*this, momentum, velocity, least_mass); }
 
 private:
     [[nodiscard]] bool is_at_edge(size_t node) const;

@@ -85,21 +85,18 @@ void GridMotion::meet(const Wall& wall, size_t axis, double outwards, NodePair n
 
 // A point of mass m sees at most M / m of the velocity of a node of mass M. Where M is below a share of the least m, the velocity counts as
 // that much less; of nine such nodes together a point sees at most nine shares of the largest one counted.
-double GridMotion::largest_speed() const {
+double speed_bound(const WalledGrid& grid, const std::vector<NodeMomentum>& momentum,
+                   const std::vector<NodeVector>& velocity, double least_mass) {
     constexpr double light_share = 1.0 / 900;
     const double per_mass = 1 / std::max(light_share * least_mass, std::numeric_limits<double>::min());
-    const auto stride = static_cast<size_t>(grid.cells[0]);
     double largest = 0, sum = 0;  // the largest of numbers and NaN may be a number, their sum is none
-    for (size_t row = 0; row < spans.size(); ++row) {
-        const size_t last = row * stride + static_cast<size_t>(spans[row].last);
-        for (size_t i = row * stride + static_cast<size_t>(spans[row].first); i < last; ++i) {
-            const double weight = std::min(momentum[i].mass * per_mass, 1.0);
-            const double x = weight * velocity[i].x, y = weight * velocity[i].y;
-            const double square = x * x + y * y;
-            largest = std::max(largest, square);
-            sum += square;
-        }
-    }
+    grid.for_each_node([&](size_t i) {
+        const double weight = std::min(momentum[i].mass * per_mass, 1.0);
+        const double x = weight * velocity[i].x, y = weight * velocity[i].y;
+        const double square = x * x + y * y;
+        largest = std::max(largest, square);
+        sum += square;
+    });
     return std::isfinite(sum) ? (1 + 9 * light_share) * std::sqrt(largest) : sum;
 }
 

@@ -19,6 +19,11 @@ struct NodeVector {
     double x = 0, y = 0;
 };
 
+/// A bound of the speed that the nodes give a point, m/s; no number where a velocity is none. Nodes that only the rim of a spline reaches
+/// have next to no mass and run away, but points see as little of them. `least_mass`: kg, of a point.
+double speed_bound(const WalledGrid& grid, const std::vector<NodeMomentum>& momentum,
+                   const std::vector<NodeVector>& velocity, double least_mass);
+
 struct GridMotion : WalledGrid {
     double gravity = 0;                  ///< m/s2, downwards
     double least_mass = 0;               ///< kg, of a point
@@ -33,9 +38,7 @@ struct GridMotion : WalledGrid {
     /// Velocities at the end of a step of dt (s). Momenta are zero afterwards.
     void end_step(double dt);
 
-    /// A bound of the speed that the nodes give a point, m/s; no number where a velocity is none. Nodes that only the rim of a spline reaches
-    /// have next to no mass and run away, but points see as little of them.
-    [[nodiscard]] double largest_speed() const;
+    [[nodiscard]] double largest_speed() const { return speed_bound(*this, momentum, velocity, least_mass); }
 
 private:
     void mirror();
