@@ -101,11 +101,13 @@ void Simulation::add_traction(const GivenTraction& given, double time) {
     }
 }
 
-// The weight of water that stands on the surface. What a boundary holds there is the host's, with the traction that it gives.
+// The weight of water that stands on the surface: as deep as it may pond, for a pressure beyond is what drives water out of the ground.
+// What a boundary holds there is the host's, with the traction that it gives.
 void Simulation::add_pond(const Facet& facet, std::span<const double> pressure) {
+    const double deepest = scene_.water.density * scene_.gravity * scene_.surface.ponding_depth;
     const auto standing = [&](int32_t node) {
         const auto index = static_cast<size_t>(node);
-        return flow_->is_held(index) ? 0.0 : std::max(0.0, pressure[index]);
+        return flow_->is_held(index) ? 0.0 : std::clamp(pressure[index], 0.0, deepest);
     };
     const double at_a = standing(facet.node_a);
     if (mesh_.dimension == 1) {
