@@ -31,14 +31,20 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
     elastic_.solver->factorise(elastic_.matrix);
 }
 
-EquilibriumOutcome Equilibrium::solve(const Loads& loads, int32_t most_creep_steps) {
+EquilibriumOutcome Equilibrium::solve(const Loads& loads, double wanted, int32_t most_creep_steps) {
     constexpr double worth_predicting = 1e-2;
+    constexpr double reduction = 0.1;  // of what a change of the loads unbalances
+    constexpr double round_off = 1e-13;
     EquilibriumOutcome outcome;
     start(loads);
     const bool starts_afresh = is_at_start_;
     is_at_start_ = false;
     unbalance();
-    if (relative_residual() > tolerance) {
+    const double unbalanced = relative_residual();
+    const bool follows =
+        !starts_afresh && unbalanced > left_residual_;  // loads that the last ones' answer does not balance
+    wanted_ = follows ? std::min(wanted, std::max(reduction * unbalanced, round_off)) : wanted;
+    if (unbalanced > wanted_) {
         if (starts_afresh) {
             predict(worth_predicting, outcome);
             unbalance();
@@ -101,7 +107,7 @@ void Equilibrium::set_external_force(const Loads& loads) {
 void Equilibrium::finish(EquilibriumOutcome& outcome) {
     skeleton_.complete(increment_);
     outcome.yielding = yielding_;
-    outcome.residual = relative_residual();
+    outcome.residual = left_residual_ = relative_residual();
     if (outcome.residual <= tolerance) outcome.status = EquilibriumStatus::converged;
     for (const double u : increment_) outcome.largest_increment = std::max(outcome.largest_increment, std::abs(u));
 }
