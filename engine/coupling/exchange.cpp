@@ -11,6 +11,11 @@ namespace talus {
 namespace {
 
 constexpr int most_iterations = 40;
+// Between these, flow and skeleton are solved for together; where that does not settle either, what the others need is patience.
+constexpr int first_joint_iteration = 8;
+constexpr int last_joint_iteration = 23;
+// Of the skeleton's equilibrium meanwhile: nearly nothing may hold ground that yields.
+constexpr double joint_residual = 1e-12;
 // Disagreement of the first iteration at which the next exchange is as long as this one.
 constexpr double well_expected = 100.0;
 
@@ -44,7 +49,10 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
         expect_skeleton(duration);
     }
     ++counts.exchanges;
+    joint_step_.length = 0;
     for (int iteration = 0;; ++iteration) {
+        const bool is_plain = iteration < first_joint_iteration || iteration > last_joint_iteration;
+        if (iteration == last_joint_iteration + 1) acceleration_.restart();
         if (iteration == most_iterations) return Exchange::disagreed;
         ++counts.exchange_iterations;
         if (flow_) {
@@ -61,7 +69,7 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
             if (result == AdvanceResult::failed) return Exchange::flow_stopped;
         }
         if (!moves) break;
-        outcome_ = find_equilibrium(flow, state_.time + duration);
+        outcome_ = find_equilibrium(flow, state_.time + duration, is_plain ? Equilibrium::tolerance : joint_residual);
         if (outcome_.status != EquilibriumStatus::converged) {
             return outcome_.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost
                                                                         : Exchange::disagreed;
@@ -71,7 +79,7 @@ Simulation::Exchange Simulation::exchange(double duration, const std::function<b
         compare_pore_volumes(flow);
         if (iteration == 0) first_disagreement = disagreement_;
         if (disagreement_ <= 1.0) break;
-        correct_expectation();
+        if (is_plain || !correct_jointly(flow, duration)) correct_expectation();
         expect_skeleton_at(duration, end_volume_, end_stress_);
     }
     accept(duration, flow);
@@ -144,11 +152,10 @@ void Simulation::expect_skeleton_at(double duration, std::span<const double> vol
     }
 }
 
-EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double until) {
+EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double until, double residual) {
     const Stopwatch stopwatch(counts.seconds_motion);
     set_loads(flow, until);
-    const EquilibriumOutcome outcome = equilibrium_->solve(
-        {point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_});
+    const EquilibriumOutcome outcome = equilibrium_->solve(loads(), residual);
     counts.motion_iterations += outcome.iterations;
     return outcome;
 }
@@ -184,7 +191,8 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
 }
 
 // The next expectation. Plainly it would be what the skeleton found; where that diverges, in undrained ground that yields and is softer than
-// the split takes it for, or creeps, in ground so confined that it is stiffer, the last iterations tell how to correct it.
+// the split takes it for, or creeps, in ground so confined that it is stiffer, the last iterations tell how to correct it. They fail where
+// the ground turns from elastic to yielding and back between them: joint.cpp.
 void Simulation::correct_expectation() {
     acceleration_.accelerate(correction_);
     for (size_t i = 0; i < end_volume_.size(); ++i)

@@ -197,10 +197,29 @@ void Equilibrium::forget_increment() {
     is_at_start_ = true;
 }
 
-double Equilibrium::volumetric_increment(int32_t cell) const {
-    if (mesh_.dimension == 2) return mean_dilatation<Quad4>(kinematics_, cell, increment_.data());
-    const auto u = gather_increment<Line2>(kinematics_.stencil(cell), increment_.data());
+double Equilibrium::volumetric_strain(int32_t cell, std::span<const double> displacement) const {
+    if (mesh_.dimension == 2) return mean_dilatation<Quad4>(kinematics_, cell, displacement.data());
+    const auto u = gather_increment<Line2>(kinematics_.stencil(cell), displacement.data());
     return displacement_gradient<Line2>(kinematics_.gradient<Line2>(cell, 0), u)(1, 1);
+}
+
+bool Equilibrium::linearise(const Loads& loads) {
+    constexpr double viscosity = 1e-6;  // keeps mechanisms that hardly resist finite
+    start(loads);
+    unbalance();
+    left_ = residual_;
+    EquilibriumOutcome unused;
+    return equations_.count() > 0 && factorise_tangent(viscosity, unused);
+}
+
+std::span<const double> Equilibrium::answer(const Loads& loads) {
+    start(loads);
+    unbalance();
+    for (size_t i = 0; i < direction_.size(); ++i) direction_[i] = residual_[i] - left_[i];
+    tangent_.solver->solve(tangent_.matrix, direction_);
+    std::fill(start_.begin(), start_.end(), 0.0);
+    for (size_t i = 0; i < direction_.size(); ++i) start_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
+    return start_;
 }
 
 }  // namespace talus

@@ -76,7 +76,16 @@ public:
     [[nodiscard]] std::span<const double> reaction() const { return reaction_; }
 
     /// Volumetric strain increment of a cell since the accepted state, the mean one that its stress follows, -.
-    [[nodiscard]] double volumetric_increment(int32_t cell) const;
+    [[nodiscard]] double volumetric_increment(int32_t cell) const { return volumetric_strain(cell, increment_); }
+    /// The same under any displacement (nodes x dimension, m).
+    [[nodiscard]] double volumetric_strain(int32_t cell, std::span<const double> displacement) const;
+
+    /// Makes the tangent at the answer of the last solve(), which these loads had. False where it is singular.
+    bool linearise(const Loads& loads);
+
+    /// After linearise(): the change of the displacement (nodes x dimension, m) under loads that hardly differ, to first order. The
+    /// trial state is that of no answer until the next solve().
+    std::span<const double> answer(const Loads& loads);
 
     [[nodiscard]] double least_factor_of_safety() const { return skeleton_.least_factor_of_safety(); }
 
@@ -128,6 +137,7 @@ private:
     Anderson acceleration_;
     double wanted_ = tolerance;  // relative residual that the present solve aims at
     double left_residual_ = 0;   // that the last solve left
+    std::vector<double> left_;   // equations: unbalanced force that the last linearise() found
     int32_t yielding_ = 0;
 };
 
