@@ -94,7 +94,7 @@ private:
     void set_initial_stress();
 
     // the exchange (exchange.cpp)
-    Exchange exchange(double duration, const std::function<bool(double)>& cancelled);
+    Exchange exchange(double duration, bool is_short, const std::function<bool(double)>& cancelled);
     [[nodiscard]] bool skeleton_moves() const { return equilibrium_ && !state_.equilibrium_lost; }
     void shorten_exchange(double duration, double whole, const std::string& problem);
     void lose_equilibrium();
