@@ -74,6 +74,10 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short,
         }
         if (!moves) break;
         outcome_ = find_equilibrium(flow, state_.time + duration, is_plain ? Equilibrium::tolerance : joint_residual);
+        if (outcome_.status != EquilibriumStatus::converged && !is_plain && halve_joint_step()) {
+            expect_skeleton_at(duration, end_volume_, end_stress_);
+            continue;
+        }
         if (outcome_.status != EquilibriumStatus::converged) {
             return outcome_.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost
                                                                         : Exchange::disagreed;

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double stage_share = 1.0 - std::numbers::sqrt2 / 2;  // of the integrator's step, in each of its two stages
 constexpr double most_work_left = 0.5;                         // of a step's at its start
+constexpr int most_cuts = 8;                                   // of a step
 
 std::span<double> span_of(Eigen::VectorXd& values) { return {values.data(), static_cast<size_t>(values.size())}; }
 
@@ -36,6 +37,19 @@ bool Simulation::correct_jointly(const FlowState& flow, double duration) {
     end_stress_ = step.stress;
     for (size_t i = 0; i < end_volume_.size(); ++i)
         end_volume_[i] = step.taken_volume[i] + step.length * step.change[i];
+    return true;
+}
+
+// Half of the step, where the skeleton bears the pressures of the whole one no more: they are not those of the two together. False: enough.
+bool Simulation::halve_joint_step() {
+    JointStep& step = joint_step_;
+    if (step.length == 0 || ++step.cuts > most_cuts) return false;
+    step.longest = step.length;
+    step.length = (step.shortest + step.longest) / 2;
+    for (size_t i = 0; i < end_volume_.size(); ++i)
+        end_volume_[i] = step.taken_volume[i] + step.length * step.change[i];
+    end_stress_ = step.stress;
+    equilibrium_->reject();
     return true;
 }
 
@@ -90,7 +104,6 @@ double Simulation::work(std::span<const double> volume) const {
 }
 
 bool Simulation::is_far_enough(std::span<const double> gap) const {
-    constexpr int most_cuts = 8;
     if (joint_step_.cuts >= most_cuts) return true;
     if (disagreement_ > joint_step_.disagreement) return false;
     const double left = work(gap) / joint_step_.work;

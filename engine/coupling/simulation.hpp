@@ -108,6 +108,7 @@ private:
     bool correct_jointly(const FlowState& flow, double duration);
     bool linearise_jointly(const FlowState& flow, double duration);
     bool start_joint_step(const FlowState& flow, double duration);
+    bool halve_joint_step();
     void cut_joint_step(const FlowState& flow, double duration);
     double work_slope(const FlowState& flow, double duration);
     [[nodiscard]] bool is_far_enough(std::span<const double> gap) const;
