@@ -90,6 +90,7 @@ void Simulation::make_flow() {
         field->assign(portions, 0.0);
     acceleration_ = Anderson(portions);
     point_pressure_.resize(points);
+    point_saturation_.resize(points);
     conductivity_factor_.assign(mesh_.cell_soil.size(), 1.0);
 }
 

@@ -128,6 +128,7 @@ private:
     void refresh_geometry();
     void set_projection();
     void update_points();
+    [[nodiscard]] std::vector<double> portion_saturation(const FlowState& flow) const;
     [[nodiscard]] static bool is_full(std::span<const double> pressure);
     void notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const;
     [[nodiscard]] Place place_of(int32_t node) const;
@@ -158,7 +159,7 @@ private:
     std::vector<GivenTraction> given_tractions_;
 
     // Of the exchange under way
-    std::vector<double> portion_stress_, point_pressure_;
+    std::vector<double> portion_stress_, point_pressure_, point_saturation_;
     std::vector<double> start_stress_;  // per portion, Pa
     std::vector<double> end_stress_;    // per portion, Pa, as the flow found it
     std::vector<double> end_volume_;    // per portion, m3, as the skeleton is expected to have it
