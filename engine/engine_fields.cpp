@@ -198,12 +198,18 @@ void Engine::State::sample_cell(const FieldView& field, const CellPlace& place, 
             return;
         }
         const std::string_view name = field.name;
-        if (name == "saturation" || name == "suction" ||
-            name == "point_pressure") {  // through the pressure, which is linear in the cell
+        if (name == "saturation") {  // linear in the cell, like the pressure
+            const HydraulicTable& table = simulation.flow()->table(static_cast<size_t>(mesh.cell_soil[cell]));
+            values[0] = 0;
+            for (size_t a = 0; a < Shape::nodes; ++a) {
+                const auto node = static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(first) + a]);
+                values[0] += share[a] * table.at(simulation.state().flow.pressure[node]).saturation;
+            }
+            return;
+        }
+        if (name == "suction" || name == "point_pressure") {
             const double pressure = from_nodes(simulation.state().flow.pressure.data(), 1, 0);
-            const auto soil = static_cast<size_t>(mesh.cell_soil[cell]);
-            values[0] = name == "saturation" ? simulation.flow()->table(soil).at(pressure).saturation
-                                             : (name == "suction" ? std::max(0.0, -pressure) : pressure);
+            values[0] = name == "suction" ? std::max(0.0, -pressure) : pressure;
             return;
         }
         const auto row = static_cast<size_t>(simulation.state().points.cell_start[cell]);

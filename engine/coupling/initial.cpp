@@ -57,7 +57,11 @@ void Simulation::make_flow() {
     const auto points = static_cast<size_t>(state_.points.count);
     flow_ = std::make_unique<FlowSystem>(scene_, mesh_.node_count(), make_network(mesh_, scene_),
                                          make_flow_boundaries(mesh_, mesh_, scene_));
-    integrator_ = std::make_unique<FlowIntegrator>(*flow_, tolerance_);
+    // What Newton's method left in the pressures would be noise between the two that no exchange settles.
+    constexpr double share = 0.1;
+    integrator_ = scene_.physics.deforming
+                      ? std::make_unique<FlowIntegrator>(*flow_, tolerance_, share * agreement_pressure_)
+                      : std::make_unique<FlowIntegrator>(*flow_, tolerance_);
     flow_->forcing.rain.assign(flow_->boundaries.surface.size(), 0.0);
     flow_->forcing.held.resize(flow_->boundaries.held.size());
     flow_->forcing.flux.resize(flow_->boundaries.flux_shares.size());
@@ -83,10 +87,11 @@ void Simulation::make_flow() {
     flow_->skeleton.projection.resize(flow_->network.neighbours.size());
     state_.flow_pore_volume = state_.pore_volume;
     for (auto* field : {&state_.pore_volume_rate, &state_.pore_stress_rate, &start_stress_, &end_stress_, &end_volume_,
-                        &taken_volume_, &found_volume_, &portion_stress_, &correction_})
+                        &taken_volume_, &found_volume_, &portion_stress_, &correction_, &gap_, &joint_step_.change})
         field->assign(portions, 0.0);
     acceleration_ = Anderson(portions);
     point_pressure_.resize(points);
+    point_saturation_.resize(points);
     conductivity_factor_.assign(mesh_.cell_soil.size(), 1.0);
 }
 

@@ -14,6 +14,7 @@ void Simulation::update_points() {
     const double unit_weight = scene_.water.density * scene_.gravity;
     interpolate(mesh_, points, mesh_.cell_nodes, state_.flow.pressure, points.pressure);
     interpolate_gradient(mesh_, points, state_.flow.pressure, points.darcy_flux);
+    interpolate(mesh_, points, flow_->network.corner_portion, portion_saturation(state_.flow), points.saturation);
     const auto dimension = static_cast<size_t>(points.dimension);
     for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
         const auto soil = static_cast<size_t>(mesh_.cell_soil[c]);
@@ -22,7 +23,6 @@ void Simulation::update_points() {
         for (auto p = static_cast<size_t>(points.cell_start[c]); p < static_cast<size_t>(points.cell_start[c + 1]);
              ++p) {
             const HydraulicState here = flow_->table(soil).at(points.pressure[p]);
-            points.saturation[p] = here.saturation;
             points.porosity[p] = porosity(p);
             double* flux = &points.darcy_flux[p * dimension];  // holds the pressure's gradient
             const double mobility = -factor * here.permeability;
@@ -38,6 +38,18 @@ void Simulation::update_points() {
     }
 }
 
+// What the flow stores water by, and holds to its tolerance. The saturation that the curve gives at a pressure between two nodes is not: behind
+// a front it follows a hundredfold what hardly changes the water of a nearly dry or a full node.
+std::vector<double> Simulation::portion_saturation(const FlowState& flow) const {
+    std::vector<double> saturation;
+    saturation.reserve(flow_->network.portions.size());
+    for (const Portion& portion : flow_->network.portions) {
+        const double pressure = flow.pressure[static_cast<size_t>(portion.node)];
+        saturation.push_back(flow_->table(static_cast<size_t>(portion.soil)).at(pressure).saturation);
+    }
+    return saturation;
+}
+
 // Grains keep their volume, so that all change of volume is of the pores: D n / D t = (1 - n) div v.
 double Simulation::porosity(size_t point) const {
     const double initial = scene_.soils[static_cast<size_t>(state_.points.soil[point])].porosity;
@@ -48,6 +60,7 @@ void Simulation::set_loads(const FlowState& flow, double until) {
     const Points& points = state_.points;
     if (flow_) {
         interpolate(mesh_, points, mesh_.cell_nodes, flow.pressure, point_pressure_);
+        interpolate(mesh_, points, flow_->network.corner_portion, portion_saturation(flow), point_saturation_);
         const auto& portions = flow_->network.portions;
         for (size_t i = 0; i < portions.size(); ++i) {
             portion_stress_[i] = flow_->pore_stress(static_cast<size_t>(portions[i].soil),
@@ -63,7 +76,7 @@ void Simulation::set_loads(const FlowState& flow, double until) {
         point_density_[p] = soil.dry_density * initial_volume_[p] / points.volume[p];
         if (flow_) {
             const Retention& retention = soil.hydraulics.retention;
-            const double saturation = flow_->table(number).at(point_pressure_[p]).saturation;
+            const double saturation = point_saturation_[p];
             const double water_density =
                 scene_.water.density * std::exp(point_pressure_[p] / scene_.water.bulk_modulus);
             point_density_[p] += porosity(p) * saturation * water_density;
@@ -101,11 +114,13 @@ void Simulation::add_traction(const GivenTraction& given, double time) {
     }
 }
 
-// The weight of water that stands on the surface. What a boundary holds there is the host's, with the traction that it gives.
+// The weight of water that stands on the surface: as deep as it may pond, for a pressure beyond is what drives water out of the ground.
+// What a boundary holds there is the host's, with the traction that it gives.
 void Simulation::add_pond(const Facet& facet, std::span<const double> pressure) {
+    const double deepest = scene_.water.density * scene_.gravity * scene_.surface.ponding_depth;
     const auto standing = [&](int32_t node) {
         const auto index = static_cast<size_t>(node);
-        return flow_->is_held(index) ? 0.0 : std::max(0.0, pressure[index]);
+        return flow_->is_held(index) ? 0.0 : std::clamp(pressure[index], 0.0, deepest);
     };
     const double at_a = standing(facet.node_a);
     if (mesh_.dimension == 1) {

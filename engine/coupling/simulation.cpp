@@ -39,7 +39,7 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
         const bool is_last = state_.exchange_step >= left;
         const double duration = is_last ? left : std::min(state_.exchange_step, 0.5 * left);
         const auto watched = [&](double t) { return cancelled((state_.time + t - from) / whole); };
-        const Exchange result = exchange(duration, watched);
+        const Exchange result = exchange(duration, duration < failure_window * whole, watched);
         if (result != Exchange::agreed && skeleton_moves()) equilibrium_->reject();
         switch (result) {
             case Exchange::agreed: state_.time = is_last ? stop : state_.time + duration; break;

@@ -98,7 +98,7 @@ private:
     void make_dynamic(int32_t threads);
 
     // the exchange (exchange.cpp)
-    Exchange exchange(double duration, const Cancelled& cancelled);
+    Exchange exchange(double duration, bool is_short, const Cancelled& cancelled);
     [[nodiscard]] bool skeleton_moves() const { return equilibrium_ && !state_.equilibrium_lost; }
     void shorten_exchange(double duration, double whole, const std::string& problem);
     void lose_equilibrium();
@@ -108,14 +108,31 @@ private:
     void expect_skeleton_at(double duration, std::span<const double> volume, std::span<const double> stress);
     void compare_pore_volumes(const FlowState& flow);
     void correct_expectation();
+    // the two together (joint.cpp)
+    bool correct_jointly(const FlowState& flow, double duration);
+    bool linearise_jointly(const FlowState& flow, double duration);
+    bool start_joint_step(const FlowState& flow, double duration);
+    bool halve_joint_step();
+    void cut_joint_step(const FlowState& flow, double duration);
+    double work_slope(const FlowState& flow, double duration);
+    [[nodiscard]] bool is_far_enough(std::span<const double> gap) const;
+    [[nodiscard]] double work(std::span<const double> volume) const;
+    void add_water(const FlowState& flow, std::span<const double> volume, double sign, Eigen::VectorXd& sum) const;
+    void answer_water(Eigen::VectorXd& water);
+    void answer_pressures(const FlowState& flow, double duration, std::span<const double> change,
+                          std::span<double> answer);
+    [[nodiscard]] Loads loads() const {
+        return {point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_};
+    }
     void accept(double duration, const FlowState& flow);
-    EquilibriumOutcome find_equilibrium(const FlowState& flow, double until);
+    EquilibriumOutcome find_equilibrium(const FlowState& flow, double until, double residual);
     // what passes between them (loads.cpp)
     void set_loads(const FlowState& flow, double until);
     [[nodiscard]] double porosity(size_t point) const;
     void refresh_geometry();
     void set_projection();
     void update_points();
+    [[nodiscard]] std::vector<double> portion_saturation(const FlowState& flow) const;
     [[nodiscard]] static bool is_full(std::span<const double> pressure);
     void notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const;
     [[nodiscard]] Place place_of(int32_t node) const;
@@ -147,7 +164,7 @@ private:
     std::vector<GivenTraction> given_tractions_;
 
     // Of the exchange under way
-    std::vector<double> portion_stress_, point_pressure_;
+    std::vector<double> portion_stress_, point_pressure_, point_saturation_;
     std::vector<double> start_stress_;  // per portion, Pa
     std::vector<double> end_stress_;    // per portion, Pa, as the flow found it
     std::vector<double> end_volume_;    // per portion, m3, as the skeleton is expected to have it
@@ -155,6 +172,19 @@ private:
     std::vector<double> found_volume_;  // per portion, m3, as the skeleton found it
     std::vector<double> correction_;    // per portion, Pa: of what is expected of the skeleton
     Anderson acceleration_{0};
+    struct JointStep {
+        std::vector<double> taken_volume, stress;  // per portion, where it starts
+        std::vector<double> change;                // per portion, m3, of the expected volume
+        std::vector<double> pressure;              // per node, Pa, what that changes the pressures by
+        double disagreement = 0;                   // where it starts
+        double work = 0;                           // J, of the gap there on the change of the pressures
+        double length = 0;                         // gone; 0: none
+        double shortest = 0, longest = 1;          // between which the kink lies
+        int cuts = 0;
+    } joint_step_;
+    std::vector<double> gap_;                     // per portion, m3
+    SparseMatrix joint_matrix_, storage_matrix_;  // the flow's
+    std::unique_ptr<KluSolver> joint_solver_;     // empty: not needed yet
     double disagreement_ = 0;  // largest difference of the two's pore volumes, over the one that is let stand
     std::vector<double> point_pore_stress_, point_density_, node_force_, prescribed_displacement_;
     std::vector<ShearStrength> point_strength_;

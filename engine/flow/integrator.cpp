@@ -52,6 +52,7 @@ struct FlowIntegrator::Arkode {
     FlowSystem& system;
     StageSolver solver;
     double tolerance;
+    double pressure_tolerance;
     SUNContext context = nullptr;
     N_Vector variables = nullptr;  // stored water of every node, then the totals
     SUNNonlinearSolver nonlinear_solver = nullptr;
@@ -64,7 +65,7 @@ struct FlowIntegrator::Arkode {
     int refusals = 0;     // of its last substeps
     std::vector<double> target;
 
-    Arkode(FlowSystem& system_in, double tolerance_in);
+    Arkode(FlowSystem& system_in, double tolerance_in, double pressure_tolerance_in);
     ~Arkode();
     Arkode(const Arkode&) = delete;
     Arkode& operator=(const Arkode&) = delete;
@@ -81,8 +82,8 @@ struct FlowIntegrator::Arkode {
     static int weights(N_Vector y, N_Vector weight, void* user);
 };
 
-FlowIntegrator::Arkode::Arkode(FlowSystem& system_in, double tolerance_in)
-    : system(system_in), solver(system_in), tolerance(tolerance_in) {
+FlowIntegrator::Arkode::Arkode(FlowSystem& system_in, double tolerance_in, double pressure_tolerance_in)
+    : system(system_in), solver(system_in), tolerance(tolerance_in), pressure_tolerance(pressure_tolerance_in) {
     const auto nodes = static_cast<size_t>(system.node_count());
     accepted.resize(nodes);
     stage.resize(nodes);
@@ -169,7 +170,7 @@ StageAccuracy FlowIntegrator::Arkode::accuracy(double t, double gamma) const {
     for (const size_t k : {rain_total, seepage_total, inflow_total, drained_total})
         moved += totals[k] + gamma * system.total_rates()[k];
     const double stored = std::accumulate(target.begin(), target.end(), 0.0);
-    return {end_tolerance, balance * std::max(moved, little * stored)};
+    return {end_tolerance, balance * std::max(moved, little * stored), pressure_tolerance};
 }
 
 // One stage z = known + gamma rate(z), where known = predicted + sdata. What the nodes hold after it is defined by the flows, not by the
@@ -209,8 +210,8 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
     return SUN_NLS_SUCCESS;
 }
 
-FlowIntegrator::FlowIntegrator(FlowSystem& system, double tolerance)
-    : arkode_(std::make_unique<Arkode>(system, tolerance)) {}
+FlowIntegrator::FlowIntegrator(FlowSystem& system, double tolerance, double pressure_tolerance)
+    : arkode_(std::make_unique<Arkode>(system, tolerance, pressure_tolerance)) {}
 
 FlowIntegrator::~FlowIntegrator() = default;
 

@@ -9,6 +9,7 @@
 #include "flow/system.hpp"
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -35,7 +36,9 @@ enum class AdvanceResult { done, cancelled, failed };
 class FlowIntegrator {
 public:
     /// tolerance: error allowed in a substep in saturation, per unit of the pore volume.
-    FlowIntegrator(FlowSystem& system, double tolerance);
+    /// pressure_tolerance: Pa, how closely Newton's method finds the pressures at the end of an advance.
+    FlowIntegrator(FlowSystem& system, double tolerance,
+                   double pressure_tolerance = std::numeric_limits<double>::infinity());
     ~FlowIntegrator();
     FlowIntegrator(const FlowIntegrator&) = delete;
     FlowIntegrator& operator=(const FlowIntegrator&) = delete;

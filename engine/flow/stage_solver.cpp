@@ -39,10 +39,11 @@ double StageSolver::residual(double t, double step, std::span<const double> targ
                              std::span<const double> beyond) {
     system_.evaluate(t, pressure, beyond);
     double largest = 0;
-    merit_ = missing_ = 0;
+    merit_ = missing_ = astray_ = 0;
     for (size_t i = 0; i < residual_.size(); ++i) {
         residual_[i] = system_.is_held(i) ? 0.0 : system_.stored()[i] - step * system_.inflow()[i] - target[i];
         largest = std::max(largest, std::abs(residual_[i]) / system_.pore_volume()[i]);
+        astray_ = std::max(astray_, std::abs(residual_[i]) / system_.storage()[i]);
         merit_ += std::abs(residual_[i]);
         missing_ += residual_[i];
     }
@@ -68,8 +69,9 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
     std::fill(beyond_.begin(), beyond_.end(), 0.0);
     double error = residual(t, step, target, pressure, beyond_);
     const auto is_met = [&] { return error <= accuracy.node && std::abs(missing_) <= accuracy.sum; };
+    const auto is_wished = [&] { return is_met() && astray_ <= accuracy.pressure; };
     bool is_stale = factorised_step_ <= 0 || std::abs(step / factorised_step_ - 1.0) > like_steps;
-    for (int iteration = 0; iteration < most_iterations && !is_met(); ++iteration) {
+    for (int iteration = 0; iteration < most_iterations && !is_wished(); ++iteration) {
         if (!std::isfinite(error)) return false;
         ++iterations_;
         const bool is_fresh = is_stale;
@@ -78,6 +80,7 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
         solver_.solve(matrix_, change_);
         // The equations are accretive in the sum of their absolute residuals (what enters a node leaves others), hence that merit.
         const double merit = merit_;
+        const bool was_met = is_met();
         double length = 1.0;
         double trial_error = 0;
         for (int halving = 0; halving <= (is_fresh ? most_halvings : 0); ++halving, length *= 0.5) {
@@ -87,9 +90,10 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
         }
         is_stale = !(merit_ < good_contraction * merit);
         const bool is_round_off = is_fresh && largest_relative_change(pressure, change_) < round_off;
-        if (!(merit_ < merit) && (is_round_off || !is_fresh)) {  // back, and anew where the old factors led nowhere
+        if (!(merit_ < merit) &&
+            (is_round_off || !is_fresh || was_met)) {  // back, and anew where the old factors led nowhere
             error = residual(t, step, target, pressure, beyond_);
-            if (is_round_off) return std::isfinite(error);
+            if (is_round_off || (is_fresh && is_met())) return std::isfinite(error);
             continue;
         }
         std::copy(trial_.begin(), trial_.end(), pressure.begin());

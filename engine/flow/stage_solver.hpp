@@ -3,6 +3,7 @@
 
 #include "flow/system.hpp"
 
+#include <limits>
 #include <vector>
 
 namespace talus {
@@ -11,6 +12,8 @@ namespace talus {
 struct StageAccuracy {
     double node = 0;  ///< at any node, of its pore volume
     double sum = 0;   ///< over all nodes, m3: what the balance of the whole ground would miss
+    double pressure =
+        std::numeric_limits<double>::infinity();  ///< Pa, at any node that stored the rest: as far as round-off allows
 };
 
 class StageSolver {
@@ -44,6 +47,7 @@ private:
     std::vector<double> beyond_, trial_beyond_;  // digits of the pressures beyond those of a double, Pa
     double merit_ = 0;                           // sum of the absolute residuals, m3
     double missing_ = 0;                         // sum of the residuals, m3
+    double astray_ = 0;                          // largest residual as a pressure that would store it, Pa
     double factorised_step_ = 0;                 // s, of the factors at hand; 0: none
     int64_t iterations_ = 0;
 };

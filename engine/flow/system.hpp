@@ -67,7 +67,10 @@ public:
     }  ///< m3/s, without what holds the held nodes
     [[nodiscard]] const FlowTotals& total_rates() const { return total_rates_; }             ///< m3/s, likewise
     [[nodiscard]] std::span<const double> pore_volume() const { return node_pore_volume_; }  ///< m3, one a node
-    [[nodiscard]] std::span<const HydraulicState> state() const { return state_; }           ///< one a portion
+    [[nodiscard]] std::span<const double> storage() const {
+        return stored_slope_;
+    }  ///< d(stored)/dp, m3/Pa, by its own pressure
+    [[nodiscard]] std::span<const HydraulicState> state() const { return state_; }  ///< one a portion
     [[nodiscard]] bool is_held(size_t node) const { return held_node_[node] != 0; }
 
     /// Largest net inflow of a free node at the last evaluate(), relative to what passes through it or would under gravity alone.

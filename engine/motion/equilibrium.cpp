@@ -31,14 +31,20 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
     elastic_.solver->factorise(elastic_.matrix);
 }
 
-EquilibriumOutcome Equilibrium::solve(const Loads& loads, int32_t most_creep_steps) {
+EquilibriumOutcome Equilibrium::solve(const Loads& loads, double wanted, int32_t most_creep_steps) {
     constexpr double worth_predicting = 1e-2;
+    constexpr double reduction = 0.1;  // of what a change of the loads unbalances
+    constexpr double round_off = 1e-13;
     EquilibriumOutcome outcome;
     start(loads);
     const bool starts_afresh = is_at_start_;
     is_at_start_ = false;
     unbalance();
-    if (relative_residual() > tolerance) {
+    const double unbalanced = relative_residual();
+    const bool follows =
+        !starts_afresh && unbalanced > left_residual_;  // loads that the last ones' answer does not balance
+    wanted_ = follows ? std::min(wanted, std::max(reduction * unbalanced, round_off)) : wanted;
+    if (unbalanced > wanted_) {
         if (starts_afresh) {
             predict(worth_predicting, outcome);
             unbalance();
@@ -101,7 +107,7 @@ void Equilibrium::set_external_force(const Loads& loads) {
 void Equilibrium::finish(EquilibriumOutcome& outcome) {
     skeleton_.complete(increment_);
     outcome.yielding = yielding_;
-    outcome.residual = relative_residual();
+    outcome.residual = left_residual_ = relative_residual();
     if (outcome.residual <= tolerance) outcome.status = EquilibriumStatus::converged;
     for (const double u : increment_) outcome.largest_increment = std::max(outcome.largest_increment, std::abs(u));
 }
@@ -191,10 +197,29 @@ void Equilibrium::forget_increment() {
     is_at_start_ = true;
 }
 
-double Equilibrium::volumetric_increment(int32_t cell) const {
-    if (mesh_.dimension == 2) return mean_dilatation<Quad4>(kinematics_, cell, increment_.data());
-    const auto u = gather_increment<Line2>(kinematics_.stencil(cell), increment_.data());
+double Equilibrium::volumetric_strain(int32_t cell, std::span<const double> displacement) const {
+    if (mesh_.dimension == 2) return mean_dilatation<Quad4>(kinematics_, cell, displacement.data());
+    const auto u = gather_increment<Line2>(kinematics_.stencil(cell), displacement.data());
     return displacement_gradient<Line2>(kinematics_.gradient<Line2>(cell, 0), u)(1, 1);
+}
+
+bool Equilibrium::linearise(const Loads& loads) {
+    constexpr double viscosity = 1e-6;  // keeps mechanisms that hardly resist finite
+    start(loads);
+    unbalance();
+    left_ = residual_;
+    EquilibriumOutcome unused;
+    return equations_.count() > 0 && factorise_tangent(viscosity, unused);
+}
+
+std::span<const double> Equilibrium::answer(const Loads& loads) {
+    start(loads);
+    unbalance();
+    for (size_t i = 0; i < direction_.size(); ++i) direction_[i] = residual_[i] - left_[i];
+    tangent_.solver->solve(tangent_.matrix, direction_);
+    std::fill(start_.begin(), start_.end(), 0.0);
+    for (size_t i = 0; i < direction_.size(); ++i) start_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
+    return start_;
 }
 
 }  // namespace talus

@@ -49,9 +49,10 @@ public:
 
     /// Finds the displacement increment from the accepted state that balances the loads. The points' stress, strain, plastic
     /// strain and mobilised strength are a trial state until accept() or reject(). Starts from the increment of the last solve
-    /// where that was neither accepted nor rejected: loads that hardly differ are then soon balanced. After so many steps of creep it is
-    /// given up.
-    EquilibriumOutcome solve(const Loads& loads, int32_t most_creep_steps = 200);
+    /// where that was neither accepted nor rejected: loads that hardly differ are then soon balanced, and as far as they differ, so that
+    /// the answer follows them however little that is. `wanted`: the unbalanced force aimed at, where round-off lets it be had. After so
+    /// many steps of creep it is given up.
+    EquilibriumOutcome solve(const Loads& loads, double wanted = tolerance, int32_t most_creep_steps = 200);
 
     /// As solve() for a skeleton that does not yield: gravity turned on elastically.
     EquilibriumOutcome solve_elastically(const Loads& loads);
@@ -75,7 +76,16 @@ public:
     [[nodiscard]] std::span<const double> reaction() const { return reaction_; }
 
     /// Volumetric strain increment of a cell since the accepted state, the mean one that its stress follows, -.
-    [[nodiscard]] double volumetric_increment(int32_t cell) const;
+    [[nodiscard]] double volumetric_increment(int32_t cell) const { return volumetric_strain(cell, increment_); }
+    /// The same under any displacement (nodes x dimension, m).
+    [[nodiscard]] double volumetric_strain(int32_t cell, std::span<const double> displacement) const;
+
+    /// Makes the tangent at the answer of the last solve(), which these loads had. False where it is singular.
+    bool linearise(const Loads& loads);
+
+    /// After linearise(): the change of the displacement (nodes x dimension, m) under loads that hardly differ, to first order. The
+    /// trial state is that of no answer until the next solve().
+    std::span<const double> answer(const Loads& loads);
 
     [[nodiscard]] double least_factor_of_safety() const { return skeleton_.least_factor_of_safety(); }
 
@@ -125,6 +135,9 @@ private:
     std::vector<double> external_, internal_, start_;            // nodes x dimension
     std::vector<double> residual_, direction_, last_direction_;  // equations
     Anderson acceleration_;
+    double wanted_ = tolerance;  // relative residual that the present solve aims at
+    double left_residual_ = 0;   // that the last solve left
+    std::vector<double> left_;   // equations: unbalanced force that the last linearise() found
     int32_t yielding_ = 0;
 };
 

@@ -51,7 +51,7 @@ std::vector<double> cell_means(const Points& points, std::span<const double> val
 // The whole weight is one load that cannot be put on in parts: stress that the elastic solution gave stiff ground moves far.
 EquilibriumOutcome yield_in_place(Equilibrium& equilibrium, const Loads& loads) {
     constexpr int32_t most_creep_steps = 2000;
-    const EquilibriumOutcome outcome = equilibrium.solve(loads, most_creep_steps);
+    const EquilibriumOutcome outcome = equilibrium.solve(loads, Equilibrium::tolerance, most_creep_steps);
     if (outcome.status == EquilibriumStatus::converged) equilibrium.accept_stress();
     return outcome;
 }

@@ -73,7 +73,7 @@ bool Equilibrium::accelerate(EquilibriumOutcome& outcome) {
     start_ = increment_;
     acceleration_.restart();
     for (int32_t since = 0; since < patience; ++since) {
-        if (relative_residual() <= tolerance) return true;
+        if (relative_residual() <= wanted_) return true;
         solve_for_direction(elastic_, outcome);
         acceleration_.accelerate(direction_);
         step_along(1);
@@ -101,7 +101,7 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome) {
     double unbalanced = norm(residual_);
     std::fill(last_direction_.begin(), last_direction_.end(), 0.0);
     for (int32_t k = 0; k < most_steps && viscosity < largest_viscosity; ++k) {
-        if (relative_residual() <= tolerance) return true;
+        if (relative_residual() <= wanted_) return true;
         double length = 0;
         if (factorise_tangent(viscosity, outcome)) {
             solve_for_direction(tangent_, outcome);
@@ -112,6 +112,8 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome) {
             viscosity *= 4;
             continue;
         }
+        const bool gains = norm(residual_) < unbalanced / 2;
+        if (!gains && relative_residual() <= tolerance) return true;
         const double ratio = std::clamp(norm(residual_) / unbalanced, smallest_ratio, 1.0);
         unbalanced = norm(residual_);
         viscosity *= length < 1 ? 2 : steady_ratio * ratio;

@@ -82,7 +82,8 @@ def coupled_cases():
     sand = earth(cohesion=0, friction=20, dilation=10, poisson=0.49, n=4, alpha=1e-5, conductivity=1e-8, strength=fredlund)
     scene = few_cells(sand, 1, {"flow": "hydrostatic", "waterTable": 0, "stress": "k0", "k0": 0.4}, surface=rain_zone(1e-6))
     yield Case("found/91_reduced", scene, [["step", 1, 5]])
-    for number in (31, 77, 83, 89, 91, 107, 146, 191, 187, 203, 254, 257, 272, 287, 371, 440, 467):
+    for number in (31, 77, 83, 89, 91, 107, 146, 191, 187, 203, 254, 257, 272, 287, 371, 382, 403, 440, 467, 673, 754, 773,
+                   787, 865, 914, 980):
         yield replace(random_case(number), name=f"found/{number}")
 
 
