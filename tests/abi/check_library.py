@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 # Nothing else may come in: no SUNDIALS or SuiteSparse of the system's (linked statically), no OpenMP, no MPI.
-MAY_NEED = re.compile(r"(libcapnp(-json)?|libkj)-[\d.]+\.so|(libstdc\+\+|libm|libgcc_s|libc|ld-linux-x86-64)\.so\.\d+")
+MAY_NEED = re.compile(r"(libcapnp(-json)?|libkj)-[\d.]+\.so|libtbb\.so\.\d+|(libstdc\+\+|libm|libgcc_s|libc|ld-linux-x86-64)\.so\.\d+")
 
 
 def output(*command):

@@ -57,7 +57,7 @@ struct Impatient {
 
 }  // namespace
 
-TEST_CASE("C API: a heap falls, spreads, and comes to rest; its energy goes into friction") {
+TEST_CASE("C API: a heap falls, spreads, and comes to rest, and its energy goes into friction") {
     const host::Engine engine = host::engine(heap_text);
     talus_step_report report = TALUS_STEP_REPORT_INIT;
     REQUIRE(talus_engine_report(engine.get(), &report) == TALUS_OK);
