@@ -1,5 +1,7 @@
 #include "points/free_points.hpp"
 
+#include <numeric>
+
 namespace talus {
 namespace {
 
@@ -12,6 +14,14 @@ void arrange_field(std::vector<Value>& field, std::vector<Value>& old, const std
 }
 
 }  // namespace
+
+void FreePoints::assign(size_t points, size_t fields) {
+    count = points;
+    for (size_t f = 0; f < fields; ++f) field[f].assign(points, 0.0);
+    soil.assign(points, 0);
+    number.resize(points);
+    std::iota(number.begin(), number.end(), 0);
+}
 
 size_t FreePoints::bytes_a_point() const {
     size_t bytes = sizeof(int32_t) * ((soil.empty() ? 0 : 1) + (number.empty() ? 0 : 1));

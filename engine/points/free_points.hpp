@@ -26,6 +26,14 @@ enum PointField : size_t {
     point_volume,  ///< m3 per metre of thickness
     solid_mass,    ///< kg per metre of thickness
     plastic_shear_strain,
+    dry_fields,  ///< so many has a dry ground
+    water_mass = dry_fields,  ///< kg per metre of thickness
+    liquid_velocity_x,        ///< m/s
+    liquid_velocity_y,
+    liquid_affine_xx,  ///< as the solid's, 1/s
+    liquid_affine_xy,
+    liquid_affine_yx,
+    liquid_affine_yy,
     point_fields
 };
 
@@ -34,6 +42,9 @@ struct FreePoints {
     std::array<std::vector<double>, point_fields> field;
     std::vector<int32_t> soil;    ///< index into Scene::soils
     std::vector<int32_t> number;  ///< the point's own, kept when points are arranged anew
+
+    /// So many points with the first of the fields, all zero.
+    void assign(size_t points, size_t fields);
 
     double* operator[](PointField name) { return field[name].data(); }
     const double* operator[](PointField name) const { return field[name].data(); }

@@ -187,17 +187,14 @@ SeededPoints seed_points(const Mesh& mesh, double cell_size, std::array<double, 
 
     SeededPoints seeded;
     FreePoints& points = seeded.points;
-    points.count = pieces.size();
-    for (auto& values : points.field) values.assign(points.count, 0.0);
-    points.number.resize(points.count);
-    std::iota(points.number.begin(), points.number.end(), 0);
+    points.assign(pieces.size(), dry_fields);
     for (size_t p = 0; p < points.count; ++p) {
         const Piece& piece = pieces[p];
         points[position_x][p] = corner[0] + width * (piece.column + piece.moment_x / piece.area);
         points[position_y][p] = corner[1] + width * (piece.row + piece.moment_y / piece.area);
         points[point_volume][p] = width * width * piece.area;
         points[solid_mass][p] = density[static_cast<size_t>(piece.soil)] * points[point_volume][p];
-        points.soil.push_back(piece.soil);
+        points.soil[p] = piece.soil;
         seeded.cell.push_back(piece.cell);
     }
     return seeded;

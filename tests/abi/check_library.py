@@ -8,8 +8,8 @@ import re
 import subprocess
 import sys
 
-# Nothing else may come in: no SUNDIALS or SuiteSparse of the system's (linked statically), no OpenMP, no MPI.
-MAY_NEED = re.compile(r"(libcapnp(-json)?|libkj)-[\d.]+\.so|libtbb\.so\.\d+|(libstdc\+\+|libm|libgcc_s|libc|ld-linux-x86-64)\.so\.\d+")
+# Nothing else may come in (threads are oneTBB's): no SUNDIALS or SuiteSparse of the system's (linked statically), no OpenMP, no MPI.
+MAY_NEED = re.compile(r"(libcapnp(-json)?|libkj)-[\d.]+\.so|(libstdc\+\+|libm|libgcc_s|libc|libtbb|ld-linux-x86-64)\.so\.\d+")
 
 
 def output(*command):

@@ -5,6 +5,7 @@ import functools
 import column
 import dynamic_slides
 import engine_cases
+import explicit_motion
 import mandel
 import slopes
 import srivastava_yeh
@@ -18,6 +19,9 @@ CASES = {
     "srivastava_yeh": srivastava_yeh.rows,
     **{name: functools.partial(engine_cases.rows, name)
        for name in ("footing_q4", "footing_t3", "patch", "order", "elastic_bar", "rotation")},
+    "saturated_wave": explicit_motion.saturated_wave_rows,
+    "wave_speeds": explicit_motion.standing_wave_rows,
+    "column_explicit": explicit_motion.column_rows,
     "column_collapse": dynamic_slides.collapse_rows,
     "cohesive_slope": dynamic_slides.slope_rows,
     "slope_gentle": lambda: slopes.rows("slope_gentle"),

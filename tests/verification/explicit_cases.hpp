@@ -13,15 +13,12 @@ namespace talus::test {
 inline constexpr double block_density = 2000;  // kg/m3
 
 /// A rectangle of points at rest, two a cell and direction, with its lower left corner at (x, y).
-inline FreePoints block_of_points(double cell_size, double x, double y, size_t columns, size_t rows) {
+inline FreePoints block_of_points(double cell_size, double x, double y, size_t columns, size_t rows,
+                                  size_t fields = dry_fields) {
     FreePoints points;
-    points.count = 4 * columns * rows;
-    for (auto& values : points.field) values.assign(points.count, 0.0);
-    points.soil.assign(points.count, 0);
-    points.number.resize(points.count);
+    points.assign(4 * columns * rows, fields);
     const double spacing = cell_size / 2;
     for (size_t p = 0; p < points.count; ++p) {
-        points.number[p] = static_cast<int32_t>(p);
         points[position_x][p] = x + (static_cast<double>(p % (2 * columns)) + 0.5) * spacing;
         points[position_y][p] = y + (static_cast<double>(p / (2 * columns)) + 0.5) * spacing;
         points[point_volume][p] = spacing * spacing;

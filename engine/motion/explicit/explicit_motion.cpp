@@ -8,19 +8,9 @@
 #include <numeric>
 
 namespace talus {
-namespace {
-
-constexpr int32_t strip_rows = 8;
-constexpr int32_t margin =
-    2;  // cells that a point may drift from where it was arranged; less than half of a strip's rows less one
-
-}  // namespace
-
 ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
                                FreePoints points, int32_t threads)
-    : soils_(std::move(soils)),
-      points_(std::move(points)),
-      threads_(threads > 1 ? std::make_unique<tbb::task_arena>(threads) : nullptr) {
+    : soils_(std::move(soils)), points_(std::move(points)), arrangement_(threads) {
     for (const ExplicitSoil& soil : soils_) yields_ = yields_ || soil.yields;
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
@@ -35,31 +25,18 @@ void ExplicitMotion::restart() {
     nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
     nodes_.grid.cells = {};
     arrange_points();
-    for_each_strip([this](Strip strip) { give(strip); });
+    arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
 
-template <class Handle>
-void ExplicitMotion::for_each_strip(const Handle& handle) {
-    for (const size_t parity : {size_t{0}, size_t{1}}) {
-        const size_t strips = (strips_.size() + 1 - parity) / 2;
-        const auto handle_one = [&](size_t s) { handle(strips_[2 * s + parity]); };
-        if (!threads_) {
-            for (size_t s = 0; s < strips; ++s) handle_one(s);
-        } else {
-            threads_->execute([&] { tbb::parallel_for(size_t{0}, strips, handle_one); });
-        }
-    }
-}
-
 bool ExplicitMotion::step(double dt, bool is_last) {
-    for_each_strip([&](Strip strip) { stress_and_forces(strip, dt); });
+    arrangement_.for_each_strip([&](Strip strip) { stress_and_forces(strip, dt); });
     nodes_.end_step(dt);
     const double drift = dt * nodes_.speed / nodes_.grid.cell_size;
-    if (!(drift <= margin)) return false;
-    if (drift_ + drift > margin) arrange_points();
-    drift_ += drift;
-    for_each_strip([&](Strip strip) {
+    if (!arrangement_.bears(drift)) return false;
+    if (arrangement_.is_outgrown(drift)) arrange_points();
+    arrangement_.drift(drift);
+    arrangement_.for_each_strip([&](Strip strip) {
         if (is_last) {
             move_and_give<true>(strip, dt);
         } else {
@@ -128,29 +105,16 @@ void ExplicitMotion::give(Strip strip) {
     }
 }
 
-/// Points by strips of rows, in a strip by columns, in a column by cells; points of one cell keep their order.
+/// Arranges the points anew, with what the nodes hold.
 void ExplicitMotion::arrange_points() {
-    fit_grid();
-    const Grid& grid = nodes_.grid;
-    const auto columns = static_cast<size_t>(grid.cells[0]);
-    const auto strips = static_cast<size_t>((grid.cells[1] + strip_rows - 1) / strip_rows);
-    std::vector<size_t> key(points_.count), start(strips * columns * strip_rows + 1, 0);
-    for (size_t p = 0; p < points_.count; ++p) {
-        const auto row = static_cast<size_t>(grid.cell_of(points_[position_y][p], 1));
-        const auto column = static_cast<size_t>(grid.cell_of(points_[position_x][p], 0));
-        key[p] = (row / strip_rows * columns + column) * strip_rows + row % strip_rows;
-        ++start[key[p] + 1];
+    const Grid old = nodes_.grid;
+    if (arrangement_.arrange(points_, nodes_.grid)) {
+        move_nodes(nodes_.velocity, old, nodes_.grid);
+        nodes_.momentum.assign(nodes_.grid.nodes(), {});
+        nodes_.force.assign(nodes_.grid.nodes(), {});
     }
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    strips_.resize(strips);
-    for (size_t s = 0; s < strips; ++s)
-        strips_[s] = {start[s * columns * strip_rows], start[(s + 1) * columns * strip_rows]};
-    std::vector<int32_t> order(points_.count);
-    for (size_t p = 0; p < points_.count; ++p) order[start[key[p]]++] = static_cast<int32_t>(p);
-    points_.arrange(order);
-    find_spans();
+    nodes_.spans = arrangement_.spans();
     find_wave_speed();
-    drift_ = 0;
 }
 
 /// Of the points as they are: ground that dilates becomes lighter, and its waves faster.
@@ -160,63 +124,6 @@ void ExplicitMotion::find_wave_speed() {
         const Elasticity& elastic = soils_[static_cast<size_t>(points_.soil[p])].elastic;
         const double density = points_[solid_mass][p] / points_[point_volume][p];
         wave_speed_ = std::max(wave_speed_, std::sqrt((elastic.lame + 2 * elastic.shear) / density));
-    }
-}
-
-/// The grid about the points, with room for them to drift; only ever larger.
-void ExplicitMotion::fit_grid() {
-    constexpr int32_t room = 8 * (margin + 2);
-    Grid& grid = nodes_.grid;
-    std::array<int32_t, 2> before{}, after{};
-    bool fits = grid.cells[0] > 0;
-    for (size_t axis = 0; axis < 2; ++axis) {
-        const double* place = points_[axis == 0 ? position_x : position_y];
-        const auto [low, high] = std::minmax_element(place, place + points_.count);
-        const auto lowest = static_cast<int32_t>(std::floor((*low - grid.corner[axis]) / grid.cell_size));
-        const auto highest = static_cast<int32_t>(std::floor((*high - grid.corner[axis]) / grid.cell_size));
-        fits = fits && lowest >= margin + 2 && highest < grid.cells[axis] - margin - 2;
-        before[axis] = std::max(0, room - lowest);
-        after[axis] = std::max(grid.cells[axis], highest + 1 + room);
-    }
-    if (fits) return;
-    const Grid old = grid;
-    const std::vector<NodeVector> velocity = nodes_.velocity;
-    for (size_t axis = 0; axis < 2; ++axis) {
-        grid.corner[axis] -= before[axis] * grid.cell_size;
-        grid.cells[axis] = after[axis] + before[axis];
-    }
-    nodes_.momentum.assign(grid.nodes(), {});
-    nodes_.velocity.assign(grid.nodes(), {});
-    nodes_.force.assign(grid.nodes(), {});
-    for (int32_t row = 0; row < old.cells[1]; ++row) {
-        const auto from = velocity.begin() + static_cast<int64_t>(row) * old.cells[0];
-        std::copy(from, from + old.cells[0],
-                  nodes_.velocity.begin() + static_cast<int64_t>(row + before[1]) * grid.cells[0] + before[0]);
-    }
-}
-
-void ExplicitMotion::find_spans() {
-    const Grid& grid = nodes_.grid;
-    std::vector<Span> held(static_cast<size_t>(grid.cells[1]), {grid.cells[0], 0});
-    for (size_t p = 0; p < points_.count; ++p) {
-        const int32_t column = grid.cell_of(points_[position_x][p], 0);
-        Span& span = held[static_cast<size_t>(grid.cell_of(points_[position_y][p], 1))];
-        span.first = std::min(span.first, column);
-        span.last = std::max(span.last, column + 1);
-    }
-    constexpr int32_t reach = margin + 1;
-    nodes_.spans.assign(held.size(), {grid.cells[0], 0});
-    for (int32_t row = 0; row < grid.cells[1]; ++row) {
-        Span& span = nodes_.spans[static_cast<size_t>(row)];
-        for (int32_t near = std::max(0, row - reach); near <= std::min(grid.cells[1] - 1, row + reach); ++near) {
-            span.first = std::min(span.first, held[static_cast<size_t>(near)].first);
-            span.last = std::max(span.last, held[static_cast<size_t>(near)].last);
-        }
-        if (span.first >= span.last) {
-            span = {};
-            continue;
-        }
-        span = {std::max(0, span.first - reach), std::min(grid.cells[0], span.last + reach)};
     }
 }
 

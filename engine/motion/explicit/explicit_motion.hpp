@@ -3,19 +3,14 @@
 // A step: velocities of the nodes from the points' momenta; strain and stress of the points; the nodes' equation of motion; the
 // points' new velocity and place, from where they give their momenta to the nodes again. Points are handled by two passes, so that
 // each is loaded twice a step.
-//
-// Points lie in the order of strips of rows of cells. Strips that are not neighbours share no node: even ones are handled at once, then
-// odd ones, and every node receives its shares in the same order for any number of threads.
 #pragma once
 
+#include "motion/explicit/arrangement.hpp"
 #include "motion/explicit/grid_motion.hpp"
 #include "motion/explicit/stress.hpp"
 #include "points/free_points.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace talus {
@@ -51,16 +46,8 @@ public:
     [[nodiscard]] const Grid& grid() const { return nodes_.grid; }
 
 private:
-    struct Strip {
-        size_t first, last;  // points
-    };
-
     void arrange_points();
-    void fit_grid();
-    void find_spans();
     void find_wave_speed();
-    template <class Handle>
-    void for_each_strip(const Handle& handle);
     void stress_and_forces(Strip strip, double dt);
     template <bool keeps>
     void move_and_give(Strip strip, double dt);
@@ -69,11 +56,9 @@ private:
     std::vector<ExplicitSoil> soils_;
     FreePoints points_;
     GridMotion nodes_;
-    std::vector<Strip> strips_;
-    std::unique_ptr<tbb::task_arena> threads_;  // empty: this one alone
-    bool yields_ = false;                       // any soil
-    double wave_speed_ = 0;                     // m/s, the fastest when the points were arranged
-    double drift_ = 0;                          // cells that a point may have moved since it was arranged
+    Arrangement arrangement_;
+    bool yields_ = false;    // any soil
+    double wave_speed_ = 0;  // m/s, the fastest when the points were arranged
 };
 
 }  // namespace talus

@@ -7,77 +7,24 @@
 namespace talus {
 namespace {
 
-bool is_mirror(const Wall& wall) { return wall.kind == WallKind::roller || wall.kind == WallKind::fixed; }
-
-/// How a vector beyond the wall is seen in the mirror.
-NodeVector signs(const Wall& wall, size_t axis) {
-    if (wall.kind == WallKind::fixed) return {-1, -1};
-    return axis == 0 ? NodeVector{-1, 1} : NodeVector{1, -1};
-}
-
-void add(NodeVector& to, const NodeVector& sign, const NodeVector& value) {
+void add(NodeVector& to, const Mirror& sign, const NodeVector& value) {
     to.x += sign.x * value.x;
     to.y += sign.y * value.y;
 }
 
 }  // namespace
 
-template <class Use>
-void GridMotion::for_each_node(const Use& use) {
-    const auto stride = static_cast<size_t>(grid.cells[0]);
-    for (size_t row = 0; row < spans.size(); ++row) {
-        const size_t first = row * stride + static_cast<size_t>(spans[row].first);
-        const size_t last = row * stride + static_cast<size_t>(spans[row].last);
-        for (size_t node = first; node < last; ++node) use(node);
-    }
-}
-
-template <class Use>
-void GridMotion::for_each_pair(const Wall& wall, size_t axis, int32_t inwards, const Use& use) {
-    const auto stride = static_cast<size_t>(grid.cells[0]);
-    const auto line = static_cast<size_t>(grid.cell_of(wall.place + 0.5 * inwards * grid.cell_size, axis));
-    if (axis == 1) {
-        for (auto column = static_cast<size_t>(spans[line].first); column < static_cast<size_t>(spans[line].last);
-             ++column)
-            use(Pair{line * stride + column, (line - 1) * stride + column});
-        return;
-    }
-    for (size_t row = 0; row < spans.size(); ++row) {
-        const bool reached =
-            static_cast<int32_t>(line) >= spans[row].first && static_cast<int32_t>(line) < spans[row].last;
-        const size_t inside = row * stride + line;
-        if (reached) use(Pair{inside, inwards > 0 ? inside - 1 : inside + 1});
-    }
-}
-
-template <class Use>
-void GridMotion::for_each_wall(const Use& use) {
-    use(walls.left, size_t{0}, 1);
-    use(walls.right, size_t{0}, -1);
-    use(walls.base, size_t{1}, 1);
-}
-
-/// Calls fold(nodes, signs) for every pair that a wall mirrors, wall after wall: in a corner, shares go from node to node.
-template <class Fold>
-void GridMotion::fold(const Fold& fold) {
-    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
-        if (!is_mirror(wall)) return;
-        const NodeVector sign = signs(wall, axis);
-        for_each_pair(wall, axis, inwards, [&](Pair nodes) { fold(nodes, sign); });
-    });
-}
-
 /// Beyond a wall the nodes move as the mirrored ground would, so that what is interpolated on the wall is zero across it, and along it
 /// where it is fixed.
 void GridMotion::mirror() {
-    fold([this](Pair nodes, const NodeVector& sign) {
+    for_each_mirror([this](NodePair nodes, const Mirror& sign) {
         velocity[nodes.beyond] = {sign.x * velocity[nodes.inside].x, sign.y * velocity[nodes.inside].y};
     });
 }
 
 void GridMotion::begin_step() {
     for_each_node([this](size_t i) { force[i] = {0, -gravity * momentum[i].mass}; });
-    fold([this](Pair nodes, const NodeVector& sign) {
+    for_each_mirror([this](NodePair nodes, const Mirror& sign) {
         NodeMomentum &in = momentum[nodes.inside], &out = momentum[nodes.beyond];
         in.x += sign.x * out.x;
         in.y += sign.y * out.y;
@@ -95,7 +42,8 @@ void GridMotion::begin_step() {
 }
 
 void GridMotion::end_step(double dt) {
-    fold([this](Pair nodes, const NodeVector& sign) { add(force[nodes.inside], sign, force[nodes.beyond]); });
+    for_each_mirror(
+        [this](NodePair nodes, const Mirror& sign) { add(force[nodes.inside], sign, force[nodes.beyond]); });
     for_each_node([this, dt](size_t i) {
         const double response = momentum[i].mass > 0 ? dt / momentum[i].mass : 0;
         velocity[i].x += response * force[i].x;
@@ -110,13 +58,13 @@ void GridMotion::end_step(double dt) {
 void GridMotion::slide(bool with_friction) {
     for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
         if (wall.kind != WallKind::friction) return;
-        for_each_pair(wall, axis, inwards, [&](Pair nodes) { meet(wall, axis, -inwards, nodes, with_friction); });
+        for_each_pair(wall, axis, inwards, [&](NodePair nodes) { meet(wall, axis, -inwards, nodes, with_friction); });
     });
 }
 
 /// Ground that runs into a wall: the two nodes get the one velocity that the mirrored ground would have, and along the wall the momentum
 /// that friction leaves of theirs.
-void GridMotion::meet(const Wall& wall, size_t axis, double outwards, Pair nodes, bool with_friction) {
+void GridMotion::meet(const Wall& wall, size_t axis, double outwards, NodePair nodes, bool with_friction) {
     const double mass_inside = momentum[nodes.inside].mass, mass_beyond = momentum[nodes.beyond].mass;
     const double mass = mass_inside + mass_beyond;
     if (!(mass > 0)) return;

@@ -99,8 +99,8 @@ void set_strength(const std::vector<ExplicitSoil>& soils, const FreePoints& poin
     }
 }
 
-void strain_elastically(FreePoints& points, size_t first, size_t count, double dt, const GradientBlock& __restrict gradient,
-                        const MaterialBlock& __restrict block) {
+void strain_elastically(FreePoints& points, size_t first, size_t count, double dt,
+                        const GradientBlock& __restrict gradient, const MaterialBlock& __restrict block) {
     double* __restrict xx = points[stress_xx] + first;
     double* __restrict yy = points[stress_yy] + first;
     double* __restrict zz = points[stress_zz] + first;

@@ -103,7 +103,44 @@ inline void scatter_force(const Grid& grid, size_t count, const SplineBlock& spl
     }
 }
 
-/// What a point gives to the nodes: momentum and mass, and the momentum's change along x and y over one cell. Numbers are written alone
+/// Two components of a field at points.
+struct VelocityBlock {
+    BlockValues x, y;
+};
+
+/// Divergence of a vector field of the nodes at points.
+inline void gather_divergence(const Grid& grid, const std::vector<NodeVector>& field, size_t count,
+                              const SplineBlock& spline, BlockValues& divergence) {
+    NodePatch<Pair, false> patch(&field.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        Pair sum = Pair::Zero();
+        for (size_t j = 0; j < 3; ++j) {
+            const Pair along(spline.value_y[j][k], spline.slope_y[j][k]);
+            for (size_t i = 0; i < 3; ++i)
+                sum += along * Pair(spline.slope_x[i][k], spline.value_x[i][k]) * patch.node[j][i];
+        }
+        divergence[k] = sum[0] + sum[1];
+    }
+}
+
+/// Values of a field of the nodes at points, two components.
+inline void gather_values(const Grid& grid, const std::vector<NodeVector>& field, size_t count,
+                          const SplineBlock& spline, VelocityBlock& value) {
+    NodePatch<Pair, false> patch(&field.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        Pair sum = Pair::Zero();
+        for (size_t j = 0; j < 3; ++j)
+            sum += spline.value_y[j][k] *
+                   (spline.value_x[0][k] * patch.node[j][0] + spline.value_x[1][k] * patch.node[j][1] +
+                    spline.value_x[2][k] * patch.node[j][2]);
+        value.x[k] = sum[0];
+        value.y[k] = sum[1];
+    }
+}
+
+/// What a point gives to the nodes: momentum, mass and one number more, and the momentum's change along x and y over one cell. Numbers are written alone
 /// and read by fours, a block later: sooner, the processor would wait for them.
 struct Gift {
     void set(double mass, const Pair& velocity, const Pair& change_x, const Pair& change_y) {
@@ -115,11 +152,6 @@ struct Gift {
     Quad own = Quad::Zero(), along_x = Quad::Zero(), along_y = Quad::Zero();
 };
 using GiftBlock = std::array<Gift, block_size>;
-
-/// The velocity of points, and its change over one cell about them.
-struct VelocityBlock {
-    BlockValues x, y;
-};
 
 /// Takes velocity and its affine part from the nodes (Jiang et al. 2015, ACM Trans. Graph. 34), as the gift that the points will give back.
 /// The points themselves keep it where `keeps`; `x` and `affine` are the first of its two and four fields.

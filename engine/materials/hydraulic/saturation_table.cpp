@@ -1,0 +1,40 @@
+#include "materials/hydraulic/saturation_table.hpp"
+
+namespace talus {
+namespace {
+
+/// Monotone slopes of the rows' values, per row.
+std::vector<double> row_slopes(const std::vector<double>& value) {
+    std::vector<double> slope(value.size());
+    for (size_t i = 0; i < value.size(); ++i) {
+        const size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, value.size() - 1);
+        slope[i] = (value[after] - value[before]) / static_cast<double>(after - before);
+    }
+    limit_slopes(value, slope);
+    return slope;
+}
+
+}  // namespace
+
+SaturationTable::SaturationTable(const Hydraulics& hydraulics)
+    : residual_(hydraulics.retention.residual_saturation),
+      maximum_(hydraulics.retention.maximum_saturation),
+      rows_(saturation_rows::count) {
+    const HydraulicTable curves(hydraulics);
+    chord_pressure_ = -curves.chord();
+    const HydraulicState end = curves.at(chord_pressure_);
+    chord_permeability_ = end.permeability;
+    chord_effective_ = effective(end.saturation);
+    std::vector<double> pressure, permeability;
+    for (int i = 0; i < saturation_rows::count; ++i) {
+        const double logit = saturation_rows::lowest + i * saturation_rows::spacing;
+        const double here = std::min(1 / (1 + std::exp(-logit)), chord_effective_);
+        pressure.push_back(curves.pressure_of_saturation(residual_ + here * (maximum_ - residual_)));
+        permeability.push_back(curves.at(pressure.back()).permeability);
+    }
+    const std::vector<double> pressure_slope = row_slopes(pressure), permeability_slope = row_slopes(permeability);
+    for (size_t i = 0; i < rows_.size(); ++i)
+        rows_[i] = {pressure[i], pressure_slope[i], permeability[i], permeability_slope[i]};
+}
+
+}  // namespace talus

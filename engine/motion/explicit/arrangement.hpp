@@ -1,0 +1,85 @@
+// How points are arranged for the loops, and which nodes they reach.
+//
+// Points lie in the order of strips of rows of cells. Strips that are not neighbours share no node: even ones are handled at once, then
+// odd ones, and every node receives its shares in the same order for any number of threads.
+#pragma once
+
+#include "background/grid.hpp"
+#include "motion/explicit/grid_motion.hpp"
+#include "points/free_points.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace talus {
+
+/// Points first to last - 1.
+struct Strip {
+    size_t first, last;
+};
+
+class Arrangement {
+public:
+    explicit Arrangement(int32_t threads);
+
+    /// Arranges points, and gives the grid room about them, by whole cells; it only grows. True: it grew, and what nodes hold must move.
+    bool arrange(FreePoints& points, Grid& grid);
+
+    /// Whether arranging anew would do for points that move by `cells` in one step; not where that is no number.
+    [[nodiscard]] static bool bears(double cells);
+
+    /// Whether points that may move by `cells` more would leave the room they were arranged with.
+    [[nodiscard]] bool is_outgrown(double cells) const;
+    void drift(double cells) { drift_ += cells; }
+
+    [[nodiscard]] const std::vector<Span>& spans() const { return spans_; }
+
+    /// handle(strip), in as many threads as there are.
+    template <class Handle>
+    void for_each_strip(const Handle& handle) const;
+
+private:
+    bool fit(const FreePoints& points, Grid& grid) const;
+    void find_spans(const FreePoints& points, const Grid& grid);
+
+    std::unique_ptr<tbb::task_arena> threads_;  // empty: this one alone
+    std::vector<Strip> strips_;
+    std::vector<Span> spans_;
+    double drift_ = 0;  // cells that a point may have moved since it was arranged
+};
+
+template <class Handle>
+void Arrangement::for_each_strip(const Handle& handle) const {
+    for (const size_t parity : {size_t{0}, size_t{1}}) {
+        const size_t strips = (strips_.size() + 1 - parity) / 2;
+        const auto handle_one = [&](size_t s) { handle(strips_[2 * s + parity]); };
+        if (!threads_) {
+            for (size_t s = 0; s < strips; ++s) handle_one(s);
+        } else {
+            threads_->execute([&] { tbb::parallel_for(size_t{0}, strips, handle_one); });
+        }
+    }
+}
+
+/// What nodes of `old` hold, where they are in `grid`, which grew from it.
+template <class Value>
+void move_nodes(std::vector<Value>& values, const Grid& old, const Grid& grid) {
+    const auto shift = [&](size_t axis) {
+        return static_cast<size_t>((old.corner[axis] - grid.corner[axis]) / grid.cell_size + 0.5);
+    };
+    const auto columns = static_cast<size_t>(grid.cells[0]), old_columns = static_cast<size_t>(old.cells[0]);
+    std::vector<Value> moved(grid.nodes());
+    for (size_t row = 0; row < static_cast<size_t>(old.cells[1]); ++row) {
+        const auto from = values.begin() + static_cast<std::ptrdiff_t>(row * old_columns);
+        std::copy(from, from + static_cast<std::ptrdiff_t>(old_columns),
+                  moved.begin() + static_cast<std::ptrdiff_t>((row + shift(1)) * columns + shift(0)));
+    }
+    values = std::move(moved);
+}
+
+}  // namespace talus

@@ -1,0 +1,311 @@
+#include "motion/explicit/explicit_mixture.hpp"
+
+#include "motion/explicit/transfer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+namespace {
+
+/// The volumetric strain of the points becomes the nodes' mean of it.
+void smooth_dilation(size_t count, const BlockValues& __restrict mean, GradientBlock& __restrict gradient) {
+    for (size_t k = 0; k < count; ++k) {
+        const double missing = 0.5 * (mean[k] - gradient.xx[k] - gradient.yy[k]);
+        gradient.xx[k] += missing;
+        gradient.yy[k] += missing;
+    }
+}
+
+void add_apparent_cohesion(const std::vector<ExplicitHydraulics>& hydraulics, const FreePoints& points, size_t first,
+                           size_t count, const BlockValues& __restrict suction,
+                           const BlockValues& __restrict effective_saturation, MaterialBlock& __restrict material) {
+    for (size_t k = 0; k < count; ++k) {
+        const ExplicitHydraulics& soil = hydraulics[static_cast<size_t>(points.soil[first + k])];
+        const double weight = soil.weighs_suction ? effective_saturation[k] : 1.0;
+        material.cohesion[k] += soil.suction_tangent * weight * suction[k];
+    }
+}
+
+/// What a point adds to the nodes' sums: with the splines' slope along x and along y, and with their value.
+struct LiquidGift {
+    Quad along_x = Quad::Zero(), along_y = Quad::Zero(), value = Quad::Zero();
+};
+using LiquidGiftBlock = std::array<LiquidGift, block_size>;
+
+void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
+                const BlockValues& pressure, const BlockValues& mobility, LiquidGiftBlock& gift) {
+    for (size_t k = 0; k < count; ++k) {
+        const double whole = pressure[k] + unit_weight * y[k];
+        const double push = volume[k] * whole;
+        gift[k].along_x[0] = gift[k].along_y[1] = push;
+        gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
+        gift[k].value[0] = mass[k] * whole;
+        gift[k].value[1] = mass[k] * mobility[k];
+        gift[k].value[2] = volume[k];
+        gift[k].value[3] = mass[k] * y[k];
+    }
+}
+
+void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline, const LiquidGiftBlock& gift,
+                       std::vector<NodeGradients>& gradients) {
+    NodePatch<Quad, true> patch(&gradients.data()->push_x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        for (size_t j = 0; j < 3; ++j) {
+            const Quad by_slope = spline.value_y[j][k] * gift[k].along_x,
+                       by_value = spline.slope_y[j][k] * gift[k].along_y;
+            for (size_t i = 0; i < 3; ++i)
+                patch.node[j][i] += spline.slope_x[i][k] * by_slope + spline.value_x[i][k] * by_value;
+        }
+    }
+}
+
+void scatter_edge_height(const Grid& grid, size_t count, const SplineBlock& spline, const double* y,
+                         const double* volume, std::vector<NodeVector>& edge_height) {
+    NodePatch<Pair, true> patch(&edge_height.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        const double size = volume[k] * y[k];
+        for (size_t j = 0; j < 3; ++j) {
+            const Pair row(size * spline.value_y[j][k], size * spline.slope_y[j][k]);
+            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += row * Pair(spline.slope_x[i][k], spline.value_x[i][k]);
+        }
+    }
+}
+
+void scatter_means(const Grid& grid, size_t count, const SplineBlock& spline, const LiquidGiftBlock& gift,
+                   std::vector<NodeMeans>& means) {
+    NodePatch<Quad, true> patch(&means.data()->push, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        for (size_t j = 0; j < 3; ++j) {
+            const Quad row = spline.value_y[j][k] * gift[k].value;
+            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += spline.value_x[i][k] * row;
+        }
+    }
+}
+
+}  // namespace
+
+template <Filling filling>
+ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, double gravity,
+                                          std::vector<ExplicitSoil> soils, std::vector<ExplicitHydraulics> hydraulics,
+                                          std::vector<SaturationTable> tables, const ExplicitWater& water,
+                                          FreePoints points, int32_t threads)
+    : soils_(std::move(soils)),
+      hydraulics_(std::move(hydraulics)),
+      tables_(std::move(tables)),
+      water_(water),
+      points_(std::move(points)),
+      arrangement_(threads) {
+    for (const ExplicitSoil& soil : soils_) yields_ = yields_ || soil.yields;
+    nodes_.grid.cell_size = cell_size;
+    nodes_.walls = walls;
+    nodes_.gravity = gravity;
+    nodes_.liquid_density = water.density;
+    nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
+    for (size_t p = 0; p < points_.count; ++p) {
+        const auto soil = static_cast<size_t>(points_.soil[p]);
+        const double grains = points_[solid_mass][p] / (hydraulics_[soil].grain_density * points_[point_volume][p]);
+        const double frame = soils_[soil].elastic.lame + 2 * soils_[soil].elastic.shear;
+        const double fluid = water.bulk_modulus / (1 - grains);
+        // The sum of the squared speeds of the two waves without drag, which bounds both.
+        const double solid_density = points_[solid_mass][p] / points_[point_volume][p];
+        const double squares = (frame + grains * grains * fluid) / solid_density + water.bulk_modulus / water.density;
+        wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
+    }
+    arrange_points();
+    arrangement_.for_each_strip([this](Strip strip) { give(strip); });
+    nodes_.begin_step();
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::step(double dt, bool is_last) {
+    arrangement_.for_each_strip([&](Strip strip) { stress_and_forces(strip, dt); });
+    nodes_.end_step(dt);
+    const double drift = dt * nodes_.largest_speed() / nodes_.grid.cell_size;
+    if (arrangement_.is_outgrown(drift)) arrange_points();
+    arrangement_.drift(drift);
+    arrangement_.for_each_strip([&](Strip strip) {
+        if (is_last) {
+            move_and_give<true>(strip, dt);
+        } else {
+            move_and_give<false>(strip, dt);
+        }
+    });
+    nodes_.begin_step();
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::find_water(size_t first, size_t count, WaterBlock& water) const {
+    for (size_t k = 0; k < count; ++k) {
+        const size_t p = first + k;
+        const auto soil = static_cast<size_t>(points_.soil[p]);
+        const double pores = points_[point_volume][p] - points_[solid_mass][p] / hydraulics_[soil].grain_density;
+        const double filled = points_[water_mass][p] / (water_.density * pores);
+        if constexpr (filling == Filling::saturated) {
+            water.pressure[k] = water_.bulk_modulus * (filled - 1);
+            water.mobility[k] = hydraulics_[soil].mobility;
+        } else {
+            const SaturationTable& table = tables_[soil];
+            const SaturationTable::State state = table.at(filled);
+            const double excess = std::max(filled / table.maximum() - 1, 0.0);
+            water.pressure[k] = state.pressure + water_.bulk_modulus * excess;
+            water.mobility[k] = hydraulics_[soil].mobility * state.permeability;
+            water.suction[k] = -state.pressure;
+            water.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
+        }
+    }
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
+    SplineBlock spline;
+    GradientBlock gradient;
+    VelocityBlock rates;
+    MaterialBlock material;
+    WaterBlock water;
+    BlockValues total_xx, total_yy;
+    LiquidGiftBlock gift;
+    for (size_t first = strip.first; first < strip.last; first += block_size) {
+        const size_t count = std::min(block_size, strip.last - first);
+        const double* mass = points_[solid_mass] + first;
+        spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
+        gather_gradient(nodes_.grid, nodes_.velocity, count, spline, gradient);
+        gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
+        for (size_t k = 0; k < count; ++k) points_[water_mass][first + k] += dt * mass[k] * rates.y[k];
+        smooth_dilation(count, rates.x, gradient);
+        set_elasticity(soils_, points_, first, count, material);
+        strain_elastically(points_, first, count, dt, gradient, material);
+        find_water(first, count, water);
+        if (yields_) {
+            set_strength(soils_, points_, first, count, nodes_.grid.cell_size, material);
+            if constexpr (filling == Filling::unsaturated)
+                add_apparent_cohesion(hydraulics_, points_, first, count, water.suction, water.effective_saturation,
+                                      material);
+            return_stresses(points_, first, count, material);
+        }
+        for (size_t k = 0; k < count; ++k) {
+            const double pore_stress =
+                filling == Filling::saturated ? water.pressure[k] : std::max(water.pressure[k], 0.0);
+            total_xx[k] = points_[stress_xx][first + k] - pore_stress;
+            total_yy[k] = points_[stress_yy][first + k] - pore_stress;
+        }
+        const double* volume = points_[point_volume] + first;
+        scatter_force(nodes_.grid, count, spline, volume, total_xx.data(), total_yy.data(), points_[stress_xy] + first,
+                      nodes_.force);
+        const double* y = points_[position_y] + first;
+        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, water.pressure, water.mobility, gift);
+        scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
+        scatter_edge_height(nodes_.grid, count, spline, y, volume, nodes_.edge_height);
+        scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
+    }
+}
+
+template <Filling filling>
+template <bool keeps>
+void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
+    SplineBlock spline;
+    VelocityBlock taken, liquid_taken;
+    BlockValues dilation, outflow;
+    GiftBlock gift, liquid_gift;
+    for (size_t first = strip.first; first < strip.last; first += block_size) {
+        const size_t count = std::min(block_size, strip.last - first);
+        const Grid& grid = nodes_.grid;
+        double* x = points_[position_x] + first;
+        double* y = points_[position_y] + first;
+        spline.find(grid, x, y, count);
+        gather_divergence(grid, nodes_.velocity, count, spline, dilation);
+        gather_divergence(grid, nodes_.flux, count, spline, outflow);
+        take_velocity<keeps>(grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
+                             velocity_x, affine_xx, gift, taken);
+        take_velocity<keeps>(grid, nodes_.liquid_velocity, points_, first, count, spline, points_[water_mass] + first,
+                             liquid_velocity_x, liquid_affine_xx, liquid_gift, liquid_taken);
+        for (size_t k = 0; k < count; ++k) {
+            gift[k].own[3] = points_[solid_mass][first + k] * dilation[k];
+            liquid_gift[k].own[3] = -points_[point_volume][first + k] * outflow[k];
+            x[k] += dt * taken.x[k];
+            y[k] += dt * taken.y[k];
+        }
+        spline.find(grid, x, y, count);
+        give_momentum(grid, count, spline, gift, nodes_.momentum);
+        give_momentum(grid, count, spline, liquid_gift, nodes_.liquid_momentum);
+    }
+}
+
+/// The momenta of points that have velocities of their own, at the start, when no water flows yet.
+template <Filling filling>
+void ExplicitMixture<filling>::give(Strip strip) {
+    SplineBlock spline;
+    GiftBlock gift;
+    const double size = nodes_.grid.cell_size;
+    const auto give_phase = [&](size_t first, size_t count, PointField mass, PointField v, PointField a, double share,
+                                std::vector<NodeMomentum>& momentum) {
+        for (size_t k = 0; k < count; ++k) {
+            const size_t p = first + k;
+            const auto field = [&](size_t name) { return points_.field[name][p]; };
+            gift[k].set(field(mass), {field(v), field(v + 1)}, {size * field(a), size * field(a + 2)},
+                        {size * field(a + 1), size * field(a + 3)});
+            gift[k].own[3] = share * field(mass) * (field(a) + field(a + 3));
+        }
+        give_momentum(nodes_.grid, count, spline, gift, momentum);
+    };
+    for (size_t first = strip.first; first < strip.last; first += block_size) {
+        const size_t count = std::min(block_size, strip.last - first);
+        spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
+        give_phase(first, count, solid_mass, velocity_x, affine_xx, 1, nodes_.momentum);
+        give_phase(first, count, water_mass, liquid_velocity_x, liquid_affine_xx, 0, nodes_.liquid_momentum);
+    }
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::arrange_points() {
+    const Grid old = nodes_.grid;
+    std::vector<double> returned(nodes_.returned.size(), 0.0);  // none from nodes that points have left
+    nodes_.for_each_node([&](size_t i) { returned[i] = nodes_.returned[i]; });
+    nodes_.returned = std::move(returned);
+    if (arrangement_.arrange(points_, nodes_.grid)) {
+        for (auto* field : {&nodes_.velocity, &nodes_.liquid_velocity, &nodes_.flux, &nodes_.rates})
+            move_nodes(*field, old, nodes_.grid);
+        move_nodes(nodes_.returned, old, nodes_.grid);
+        nodes_.resize();
+    }
+    nodes_.spans = arrangement_.spans();
+    set_rain(rain_);
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::set_rain(double rate) {
+    rain_ = rate;
+    nodes_.rain.clear();
+    if (rate == 0) return;
+    nodes_.rain.assign(static_cast<size_t>(nodes_.grid.cells[0]), 0.0);
+    for (size_t p = 0; p < points_.count; ++p)
+        nodes_.rain[static_cast<size_t>(nodes_.grid.cell_of(points_[position_x][p], 0))] = rate * water_.density;
+}
+
+template <Filling filling>
+double ExplicitMixture<filling>::critical_step() const {
+    constexpr double share = 1.0;  // stable to 1.4: the bound of the speed is above any wave's
+    return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.largest_speed());
+}
+
+template <Filling filling>
+double ExplicitMixture<filling>::pressure(size_t point) const {
+    WaterBlock water;
+    find_water(point, 1, water);
+    return water.pressure[0];
+}
+
+template <Filling filling>
+double ExplicitMixture<filling>::saturation(size_t point) const {
+    const auto soil = static_cast<size_t>(points_.soil[point]);
+    const double pores = points_[point_volume][point] - points_[solid_mass][point] / hydraulics_[soil].grain_density;
+    return std::min(points_[water_mass][point] / (water_.density * pores), 1.0);
+}
+
+template class ExplicitMixture<Filling::saturated>;
+template class ExplicitMixture<Filling::unsaturated>;
+
+}  // namespace talus

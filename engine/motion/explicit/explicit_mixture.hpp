@@ -1,0 +1,90 @@
+// Explicit motion of material points that hold water: solid and liquid have velocities of their own (physics.md, Eqs 2 to 4 with the
+// gas at rest). The solid as in explicit_motion.hpp; see grid_mixture.hpp for what passes between points and nodes.
+//
+// A point's water is its mass; the pressure follows from it, from the pores' volume and from the soil's retention. The volumetric strain of
+// the points is a mean over the nodes' surroundings, so that nearly incompressible water does not lock the ground.
+#pragma once
+
+#include "materials/hydraulic/saturation_table.hpp"
+#include "motion/explicit/arrangement.hpp"
+#include "motion/explicit/explicit_motion.hpp"
+#include "motion/explicit/grid_mixture.hpp"
+#include "motion/explicit/stress.hpp"
+#include "points/free_points.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace talus {
+
+/// How a soil holds and conducts water. A retention is left out in ground that stays full.
+struct ExplicitHydraulics {
+    double grain_density = 0;  ///< kg/m3
+    double mobility = 0;       ///< of the full soil, kappa / mu = K / (rho_l g), m2/(Pa s)
+    double suction_tangent =
+        0;  ///< cohesion gained per suction, -, times the effective saturation where `weighs_suction`
+    bool weighs_suction = false;
+};
+
+struct ExplicitWater {
+    double density = 1000;      ///< kg/m3
+    double bulk_modulus = 2e9;  ///< Pa
+};
+
+/// Saturated: every pore is full of water at all times. Unsaturated: the gas is at rest at zero pressure.
+enum class Filling { saturated, unsaturated };
+
+template <Filling filling>
+class ExplicitMixture {
+public:
+    /// The points' fields up to liquid_affine_yy must be sized. `tables`: one a soil, none where saturated.
+    ExplicitMixture(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
+                    std::vector<ExplicitHydraulics> hydraulics, std::vector<SaturationTable> tables,
+                    const ExplicitWater& water, FreePoints points, int32_t threads);
+
+    /// As ExplicitMotion's.
+    void step(double dt, bool is_last);
+    [[nodiscard]] double critical_step() const;
+
+    void set_edge_pressure(double pressure) { nodes_.edge_pressure = pressure; }  ///< Pa
+    /// Rain on all of the ground from now on, m/s.
+    void set_rain(double rate);
+    [[nodiscard]] double rained() const { return nodes_.rained; }  ///< kg
+    void set_immersed(bool immersed) { nodes_.immersed = immersed; }
+    [[nodiscard]] double seepage() const { return nodes_.seepage; }  ///< kg
+
+    /// Pore pressure of a point, Pa.
+    [[nodiscard]] double pressure(size_t point) const;
+    [[nodiscard]] double saturation(size_t point) const;
+
+    [[nodiscard]] const FreePoints& points() const { return points_; }
+    [[nodiscard]] const Grid& grid() const { return nodes_.grid; }
+
+private:
+    struct WaterBlock {
+        BlockValues pressure, mobility, suction, effective_saturation;
+    };
+
+    void arrange_points();
+    void find_water(size_t first, size_t count, WaterBlock& water) const;
+    void stress_and_forces(Strip strip, double dt);
+    template <bool keeps>
+    void move_and_give(Strip strip, double dt);
+    void give(Strip strip);
+
+    std::vector<ExplicitSoil> soils_;
+    std::vector<ExplicitHydraulics> hydraulics_;
+    std::vector<SaturationTable> tables_;
+    ExplicitWater water_;
+    FreePoints points_;
+    GridMixture nodes_;
+    Arrangement arrangement_;
+    bool yields_ = false;    // any soil
+    double rain_ = 0;        // m/s
+    double wave_speed_ = 0;  // m/s, the fastest at the start, were all pores full
+};
+
+extern template class ExplicitMixture<Filling::saturated>;
+extern template class ExplicitMixture<Filling::unsaturated>;
+
+}  // namespace talus

@@ -1,0 +1,123 @@
+// The grid's nodes that points reach, and the walls that hold the ground, as mirrors between nodes.
+#pragma once
+
+#include "background/grid.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace talus {
+
+/// roller: no motion across the wall, nothing held along it; fixed: no motion; friction: the ground may slide, held by Coulomb's
+/// friction, and leave the wall.
+enum class WallKind { none, roller, fixed, friction };
+
+/// A plane that holds the ground, along an axis of the grid and as long as the grid.
+struct Wall {
+    WallKind kind = WallKind::none;
+    double place = 0;     ///< x of a left or right wall, y of the base, m
+    double friction = 0;  ///< tangent of the friction angle
+};
+
+struct Walls {
+    Wall left, right, base;
+};
+
+/// The columns of a row that points may reach; none where first = last.
+struct Span {
+    int32_t first = 0;
+    int32_t last = 0;
+};
+
+/// Two nodes on either side of a wall.
+struct NodePair {
+    size_t inside, beyond;
+};
+
+/// What the components of a vector beyond a wall are times, to be seen in the mirror.
+struct Mirror {
+    double x, y;
+};
+
+struct WalledGrid {
+    Grid grid;
+    Walls walls;
+    std::vector<Span> spans;  ///< one a row: outside them all is zero
+
+    template <class Use>
+    void for_each_node(const Use& use) const;
+
+    /// use(nodes) for the pairs along a wall; `inwards` is the direction of the axis in which the ground lies, 1 or -1.
+    template <class Use>
+    void for_each_pair(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const;
+
+    /// use(wall, axis, inwards)
+    template <class Use>
+    void for_each_wall(const Use& use) const;
+
+    /// use(nodes, mirror) for every pair that a roller or a fixed wall mirrors, wall after wall: in a corner, sums go from node to node.
+    template <class Use>
+    void for_each_mirror(const Use& use) const;
+
+    /// The same with every wall as a roller: what water and scalars see.
+    template <class Use>
+    void for_each_even_mirror(const Use& use) const;
+};
+
+template <class Use>
+void WalledGrid::for_each_node(const Use& use) const {
+    const auto stride = static_cast<size_t>(grid.cells[0]);
+    for (size_t row = 0; row < spans.size(); ++row) {
+        const size_t first = row * stride + static_cast<size_t>(spans[row].first);
+        const size_t last = row * stride + static_cast<size_t>(spans[row].last);
+        for (size_t node = first; node < last; ++node) use(node);
+    }
+}
+
+template <class Use>
+void WalledGrid::for_each_pair(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const {
+    const auto stride = static_cast<size_t>(grid.cells[0]);
+    const int32_t line = grid.cell_of(wall.place + 0.5 * inwards * grid.cell_size, axis);
+    if (line < 1 || line + 1 >= grid.cells[axis]) return;  // no point is near
+    const auto inside = static_cast<size_t>(line);
+    if (axis == 1) {
+        for (auto column = static_cast<size_t>(spans[inside].first); column < static_cast<size_t>(spans[inside].last);
+             ++column)
+            use(NodePair{inside * stride + column, (inside - 1) * stride + column});
+        return;
+    }
+    for (size_t row = 0; row < spans.size(); ++row) {
+        if (line < spans[row].first || line >= spans[row].last) continue;
+        const size_t node = row * stride + inside;
+        use(NodePair{node, inwards > 0 ? node - 1 : node + 1});
+    }
+}
+
+template <class Use>
+void WalledGrid::for_each_wall(const Use& use) const {
+    use(walls.left, size_t{0}, 1);
+    use(walls.right, size_t{0}, -1);
+    use(walls.base, size_t{1}, 1);
+}
+
+template <class Use>
+void WalledGrid::for_each_mirror(const Use& use) const {
+    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
+        if (wall.kind != WallKind::roller && wall.kind != WallKind::fixed) return;
+        const Mirror turned = axis == 0 ? Mirror{-1, 1} : Mirror{1, -1};
+        const Mirror mirror = wall.kind == WallKind::fixed ? Mirror{-1, -1} : turned;
+        for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror); });
+    });
+}
+
+template <class Use>
+void WalledGrid::for_each_even_mirror(const Use& use) const {
+    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
+        if (wall.kind == WallKind::none) return;
+        const Mirror mirror = axis == 0 ? Mirror{-1, 1} : Mirror{1, -1};
+        for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror); });
+    });
+}
+
+}  // namespace talus

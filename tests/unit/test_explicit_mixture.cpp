@@ -1,0 +1,119 @@
+// Material points that hold water, on the Cartesian background.
+#include "doctest/doctest.h"
+#include "materials/hydraulic/saturation_table.hpp"
+#include "motion/explicit/explicit_mixture.hpp"
+#include "verification/explicit_cases.hpp"
+
+#include <cmath>
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+constexpr double gravity = 9.81, porosity = 0.4, grain_density = block_density / (1 - porosity);
+
+Hydraulics loam() {
+    Hydraulics soil;
+    soil.retention.alpha = 4e-5;
+    soil.retention.n = 1.2;
+    soil.conductivity.along = soil.conductivity.across = 1e-4;
+    return soil;
+}
+
+/// A column of one cell's width between rollers, filled to a share of its pores.
+FreePoints wet_column(double cell_size, size_t cells, double filled) {
+    FreePoints points = block_of_points(cell_size, 0, 0, 1, cells, point_fields);
+    for (size_t p = 0; p < points.count; ++p)
+        points[water_mass][p] = 1000 * porosity * filled * points[point_volume][p];
+    return points;
+}
+
+Walls column_walls(double cell_size) {
+    return {{WallKind::roller, 0, 0}, {WallKind::roller, cell_size, 0}, {WallKind::roller, 0, 0}};
+}
+
+double water_of(const FreePoints& points) {
+    double sum = 0;
+    for (size_t p = 0; p < points.count; ++p) sum += points[water_mass][p];
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("the saturation table is the inverse of the hydraulic table") {
+    Hydraulics soil = loam();
+    soil.retention.residual_saturation = 0.1;
+    soil.retention.maximum_saturation = 0.97;
+    const HydraulicTable curves(soil);
+    const SaturationTable inverse(soil);
+    for (const double pressure : {-1.0, -9.0, -11.0, -300.0, -2e4, -1e5, -1e7}) {
+        const HydraulicState state = curves.at(pressure);
+        const SaturationTable::State found = inverse.at(state.saturation);
+        CHECK(found.pressure == doctest::Approx(pressure).epsilon(1e-5));
+        CHECK(found.permeability == doctest::Approx(state.permeability).epsilon(1e-5));
+    }
+    CHECK(inverse.at(0.99).pressure == 0.0);
+    CHECK(inverse.at(0.05).pressure < -1e8);
+}
+
+TEST_CASE("rain on an unsaturated column enters it, and no water is lost") {
+    constexpr double cell_size = 0.05;
+    const Hydraulics soil = loam();
+    ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e7, 0.3)}},
+                                                 {{grain_density, 1e-4 / (1000 * gravity)}}, {SaturationTable(soil)},
+                                                 {1000, 1e6}, wet_column(cell_size, 20, 0.85), 1);
+    column.set_rain(1e-4);
+    const double before = water_of(column.points()), dt = column.critical_step();
+    const auto steps = static_cast<int64_t>(std::ceil(2 / dt));
+    for (int64_t i = 1; i <= steps; ++i) column.step(dt, i == steps);
+    const double fallen = 1000 * 1e-4 * cell_size * dt * static_cast<double>(steps - 1);  // the last step's is to come
+    CHECK(column.rained() == doctest::Approx(fallen).epsilon(1e-12));
+    CHECK(column.seepage() == 0.0);
+    CHECK(water_of(column.points()) - before == doctest::Approx(column.rained()).epsilon(1e-9));
+    for (size_t p = 0; p < column.points().count; ++p) CHECK(column.saturation(p) <= 1.0);
+}
+
+TEST_CASE("water at rest under gravity stays at rest") {
+    constexpr double cell_size = 0.05, height = 1;
+    FreePoints points = wet_column(cell_size, 20, 1);
+    const double bulk_modulus = 1e8;
+    for (size_t p = 0; p < points.count; ++p) {
+        const double depth = height - points[position_y][p];
+        points[water_mass][p] *= 1 + 1000 * gravity * depth / bulk_modulus;
+        points[stress_yy][p] = -(block_density + porosity * 1000 - 1000) * gravity * depth;
+        points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
+    }
+    ExplicitMixture<Filling::saturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e7, 0.3)}},
+                                               {{grain_density, 1e-4 / (1000 * gravity)}}, {}, {1000, bulk_modulus},
+                                               std::move(points), 1);
+    const double before = water_of(column.points()), dt = column.critical_step();
+    for (int i = 1; i <= 2000; ++i) column.step(dt, i == 2000);
+    for (size_t p = 0; p < column.points().count; ++p) {
+        const double depth = height - column.points()[position_y][p];
+        // To within the weight of half a cell of water.
+        const double error = std::abs(column.pressure(p) / (1000 * gravity) - depth) / cell_size;
+        CHECK(error < 0.5);
+        CHECK(std::abs(column.points()[velocity_y][p]) < 1e-4);
+    }
+    CHECK(water_of(column.points()) + column.seepage() == doctest::Approx(before).epsilon(1e-12));
+}
+
+TEST_CASE("a mixture gives the same bits with one and two threads") {
+    constexpr double cell_size = 0.05;
+    const auto run = [](int32_t threads) {
+        FreePoints points = block_of_points(cell_size, 0.5, 0.02, 20, 20, point_fields);
+        for (size_t p = 0; p < points.count; ++p) {
+            points[water_mass][p] = 1000 * porosity * points[point_volume][p];
+            points[velocity_x][p] = points[liquid_velocity_x][p] = 1;
+        }
+        const ExplicitSoil soil{elasticity(1e6, 0.3), true, mohr_coulomb({100, 30}, 0, 1e300)};
+        ExplicitMixture<Filling::saturated> block(cell_size, {{}, {WallKind::roller, 3, 0}, {WallKind::fixed, 0, 0}},
+                                                  gravity, {soil}, {{grain_density, 1e-7}}, {}, {1000, 1e6},
+                                                  std::move(points), threads);
+        for (int i = 1; i <= 300; ++i) block.step(block.critical_step(), i == 300);
+        return block.points();
+    };
+    const FreePoints one = run(1), two = run(2);
+    for (size_t f = 0; f < point_fields; ++f) CHECK(one.field[f] == two.field[f]);
+}

@@ -1,0 +1,202 @@
+// Histories of explicit motion in columns one cell wide, as JSON, for the rows of tests/verification/explicit_motion.py.
+#include "motion/explicit/explicit_mixture.hpp"
+#include "verification/explicit_cases.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <vector>
+
+using namespace talus;
+using namespace talus::test;
+
+namespace {
+
+struct Ground {
+    double height, porosity, grain_density;  // m, -, kg/m3
+    Elasticity elastic;
+    double mobility;      // m2/(Pa s)
+    double bulk_modulus;  // of the water, Pa
+    double filled;        // share of the pores
+};
+
+constexpr double water_density = 1000;
+
+Walls rollers(double cell_size) {
+    return {{WallKind::roller, 0, 0}, {WallKind::roller, cell_size, 0}, {WallKind::roller, 0, 0}};
+}
+
+/// One point beside the other would move alike: a single row of them stands in the column's middle.
+FreePoints column_of_points(const Ground& ground, size_t cells) {
+    const double cell_size = ground.height / static_cast<double>(cells), spacing = cell_size / 2;
+    FreePoints points;
+    points.assign(2 * cells, point_fields);
+    for (size_t p = 0; p < points.count; ++p) {
+        points[position_x][p] = spacing;
+        points[position_y][p] = (static_cast<double>(p) + 0.5) * spacing;
+        points[point_volume][p] = cell_size * spacing;
+        points[solid_mass][p] = (1 - ground.porosity) * ground.grain_density * points[point_volume][p];
+        points[water_mass][p] = ground.porosity * ground.filled * water_density * points[point_volume][p];
+    }
+    return points;
+}
+
+template <Filling filling>
+ExplicitMixture<filling> column_of(const Ground& ground, size_t cells, double gravity, FreePoints points,
+                                   std::vector<SaturationTable> tables) {
+    const double cell_size = ground.height / static_cast<double>(cells);
+    return {cell_size,
+            rollers(cell_size),
+            gravity,
+            {{ground.elastic}},
+            {{ground.grain_density, ground.mobility}},
+            std::move(tables),
+            {water_density, ground.bulk_modulus},
+            std::move(points),
+            1};
+}
+
+/// Indices of the points from the base up.
+template <class Column>
+std::vector<size_t> upwards(const Column& column) {
+    std::vector<size_t> order(column.points().count);
+    for (size_t p = 0; p < order.size(); ++p) order[static_cast<size_t>(column.points().number[p])] = p;
+    return order;
+}
+
+void print(const char* name, const std::vector<double>& values, const char* end) {
+    std::printf("\"%s\": [", name);
+    for (size_t i = 0; i < values.size(); ++i) std::printf("%s%.17g", i == 0 ? "" : ", ", values[i]);
+    std::printf("]%s\n", end);
+}
+
+/// de Boer's column under 3 kPa (1 - cos 75 t): displacement of the surface, pressures at points.
+void saturated_wave(size_t cells) {
+    const Ground ground{10, 0.33, 2000, {5.5833e6, 8.3750e6}, 1e-2 / (water_density * 9.81), 2e11, 1};
+    auto column = column_of<Filling::saturated>(ground, cells, 0, column_of_points(ground, cells), {});
+    column.set_immersed(true);
+    constexpr int outputs = 50;
+    constexpr double duration = 0.2;
+    const auto steps = static_cast<int64_t>(std::ceil(duration / column.critical_step() / outputs));
+    const double dt = duration / static_cast<double>(outputs * steps);
+    std::vector<double> times, depths, displacements, pressures;
+    for (int output = 1; output <= outputs; ++output) {
+        for (int64_t i = 1; i <= steps; ++i) {
+            const double time = dt * (static_cast<double>((output - 1) * steps + i) - 0.5);
+            column.set_edge_pressure(3000 * (1 - std::cos(75 * time)));
+            column.step(dt, i == steps);
+        }
+        times.push_back(dt * static_cast<double>(output * steps));
+        const std::vector<size_t> order = upwards(column);
+        for (const double depth : {0.0, 1.0, 5.0}) {
+            const auto row = static_cast<size_t>(static_cast<double>(2 * cells) * (1 - depth / ground.height)) - 1;
+            const double start = (static_cast<double>(row) + 0.5) * ground.height / static_cast<double>(2 * cells);
+            depths.push_back(ground.height - start);
+            displacements.push_back(start - column.points()[position_y][order[row]]);
+            pressures.push_back(column.pressure(order[row]));
+        }
+    }
+    std::puts("{");
+    print("time", times, ",");
+    print("depth", depths, ",");
+    print("displacement", displacements, ",");
+    print("pressure", pressures, "}");
+}
+
+/// A standing wave of a quarter wave length in a column whose surface is held at no pressure: the solid's momentum in it, in time.
+void standing_wave(size_t cells, double solid, double liquid, double mobility, double duration) {
+    const Ground ground{1, 0.4, 2650, elasticity(20e6, 0.3), mobility, 2e9, 1};
+    FreePoints points = column_of_points(ground, cells);
+    const double number = std::numbers::pi / 2 / ground.height;
+    for (size_t p = 0; p < points.count; ++p) {
+        const double shape = 1e-3 * std::sin(number * points[position_y][p]);
+        const double slope = 1e-3 * number * std::cos(number * points[position_y][p]);
+        points[velocity_y][p] = solid * shape;
+        points[liquid_velocity_y][p] = liquid * shape;
+        points[affine_yy][p] = solid * slope;
+        points[liquid_affine_yy][p] = liquid * slope;
+    }
+    auto column = column_of<Filling::saturated>(ground, cells, 0, std::move(points), {});
+    column.set_immersed(true);
+    const auto steps = static_cast<int64_t>(std::ceil(duration / column.critical_step()));
+    const double dt = duration / static_cast<double>(steps);
+    std::vector<double> amplitude;
+    for (int64_t i = 1; i <= steps; ++i) {
+        column.step(dt, true);
+        double sum = 0;
+        for (size_t p = 0; p < column.points().count; ++p)
+            sum += column.points()[velocity_y][p] * std::sin(number * column.points()[position_y][p]);
+        amplitude.push_back(sum);
+    }
+    std::printf("{\"step\": %.17g,\n", dt);
+    print("amplitude", amplitude, "}");
+}
+
+/// The paper's column: profiles of pressure and saturation, means over cells, at its five times.
+void column_explicit(size_t cells) {
+    const double conductivity = 1e-4, gravity = 9.81;
+    const Ground ground{1, 0.4, 3000, elasticity(1e7, 0.3), conductivity / (water_density * gravity), 2e7, 0.85};
+    Hydraulics soil;
+    soil.retention.alpha = 4e-5;
+    soil.retention.n = 1.2;
+    soil.conductivity.along = soil.conductivity.across = conductivity;
+    FreePoints points = column_of_points(ground, cells);
+    for (size_t p = 0; p < points.count; ++p) {
+        const double depth = ground.height - points[position_y][p];
+        points[stress_yy][p] = -(1800 + 340) * gravity * depth;
+        points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
+    }
+    auto column = column_of<Filling::unsaturated>(ground, cells, gravity, std::move(points), {SaturationTable(soil)});
+    column.set_rain(1e-4);
+    std::puts("[");
+    double now = 0, initial = 0;
+    for (size_t p = 0; p < column.points().count; ++p) initial += column.points()[water_mass][p];
+    for (const double time : {20.0, 80.0, 160.0, 320.0, 600.0}) {
+        const auto steps = static_cast<int64_t>(std::ceil((time - now) / column.critical_step()));
+        const double dt = (time - now) / static_cast<double>(steps);
+        for (int64_t i = 1; i <= steps; ++i) column.step(dt, i == steps);
+        now = time;
+        const std::vector<size_t> order = upwards(column);
+        std::vector<double> height, pressure, saturation;
+        double water = 0;
+        for (size_t cell = 0; cell < cells; ++cell) {
+            const size_t low = order[2 * cell], high = order[2 * cell + 1];
+            const auto mean = [&](double a, double b) { return (a + b) / 2; };
+            height.push_back(mean(column.points()[position_y][low], column.points()[position_y][high]));
+            pressure.push_back(mean(column.pressure(low), column.pressure(high)));
+            saturation.push_back(mean(column.saturation(low), column.saturation(high)));
+            water += column.points()[water_mass][low] + column.points()[water_mass][high];
+        }
+        const double missed = (water - initial - column.rained() + column.seepage()) / initial;
+        std::printf("{\"time\": %.17g, \"steps\": %lld, \"missed\": %.17g,\n", time, static_cast<long long>(steps),
+                    missed);
+        print("height", height, ",");
+        print("pressure", pressure, ",");
+        print("saturation", saturation, time < 600 ? "}," : "}");
+    }
+    std::puts("]");
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    const std::string name = count > 2 ? arguments[1] : "";
+    const size_t cells = count > 2 ? std::strtoul(arguments[2], nullptr, 10) : 0;
+    if (name == "saturated_wave" && count == 3) {
+        saturated_wave(cells);
+    } else if (name == "standing_wave" && count == 7) {
+        standing_wave(cells, std::atof(arguments[3]), std::atof(arguments[4]), std::atof(arguments[5]),
+                      std::atof(arguments[6]));
+    } else if (name == "column_explicit" && count == 3) {
+        column_explicit(cells);
+    } else {
+        std::fputs(
+            "usage: explicit_histories saturated_wave|column_explicit CELLS\n"
+            "       explicit_histories standing_wave CELLS SOLID LIQUID MOBILITY DURATION\n",
+            stderr);
+        return 2;
+    }
+    return 0;
+}
