@@ -15,7 +15,7 @@ namespace talus {
 namespace {
 
 constexpr int64_t substeps_a_look = 16;
-constexpr double most_nodes = 1e8;  // of the grid: 6.4 GB
+constexpr double most_nodes = 2e7;  // of the grid: 1.3 GB
 
 double sin_degrees(double angle) { return std::sin(angle * std::numbers::pi / 180); }
 double tan_degrees(double angle) { return std::tan(angle * std::numbers::pi / 180); }
@@ -173,6 +173,7 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
     : soils_(explicit_soils(scene)),
       motion_(make_motion(scene, mesh, mesh_points, threads)),
       start_energy_(sum(motion_.energies())) {
+    for (const Soil& soil : scene.soils) grain_density_.push_back(soil.dry_density / (1 - soil.porosity));
     const FreePoints& points = motion_.points();
     start_position_.resize(2 * points.count);
     for (size_t p = 0; p < points.count; ++p) {
@@ -195,7 +196,8 @@ bool DynamicGround::advance(double from, double until, const Cancelled& cancelle
         const double next = is_last ? until : time + left / count;
         if (!(next > time)) stop(time, "the motion became too fast to be followed");
         const bool looks = is_last || substeps_ % substeps_a_look == substeps_a_look - 1;
-        if (!motion_.step(next - time, looks)) stop(next, "the motion of the ground came to no number");
+        if (!motion_.step(next - time, looks))
+            stop(next, "ground moved across several cells in a substep, or its velocity came to no number");
         ++substeps_;
         time = next;
         if (!looks) continue;
@@ -211,9 +213,21 @@ void DynamicGround::look(double time) {
          {position_x, position_y, velocity_x, velocity_y, stress_xx, stress_yy, stress_zz, stress_xy, point_volume}) {
         if (!is_finite(points, name)) stop(time, "the state of the ground came to no number");
     }
+    check_pores(time);
     if (static_cast<double>(motion_.grid().nodes()) > most_nodes)
         stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");
     peak_velocity_ = std::max(peak_velocity_, largest_speed(points));
+}
+
+/// Grains keep their volume: no ground is denser than they are.
+void DynamicGround::check_pores(double time) const {
+    const FreePoints& points = motion_.points();
+    for (size_t p = 0; p < points.count; ++p) {
+        const double grains = grain_density_[static_cast<size_t>(points.soil[p])] * points[point_volume][p];
+        if (points[solid_mass][p] <= grains) continue;
+        stop(time, "at (" + value_text(points[position_x][p]) + ", " + value_text(points[position_y][p]) +
+                       ") m the ground is pressed to less than the volume of its grains, too soft for what it bears");
+    }
 }
 
 MotionReport DynamicGround::report() const {

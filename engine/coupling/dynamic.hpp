@@ -21,7 +21,7 @@ public:
     DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, int32_t threads);
 
     /// Carries the points from one time to another, s. False when `cancelled` said so. Throws Error(not_converged) where the motion
-    /// comes to no number or the ground spreads beyond all bounds. In both cases the caller puts the points back.
+    /// comes to no number, the ground is pressed to less than its grains or it spreads beyond all bounds. In both cases the caller puts the points back.
     bool advance(double from, double until, const Cancelled& cancelled);
 
     /// As they were, to the last bit.
@@ -38,9 +38,11 @@ public:
 
 private:
     void look(double time);
+    void check_pores(double time) const;
 
     std::vector<ExplicitSoil> soils_;
     ExplicitMotion motion_;
+    std::vector<double> grain_density_;  // per soil, kg/m3
     std::vector<double> start_position_;
     double start_energy_ = 0;   // J
     int64_t substeps_ = 0;      // of the last advance

@@ -57,7 +57,7 @@ struct Impatient {
 
 }  // namespace
 
-TEST_CASE("C API: a heap falls, spreads, and comes to rest; its energy goes into friction") {
+TEST_CASE("C API: a heap falls, spreads, and comes to rest, and its energy goes into friction") {
     const host::Engine engine = host::engine(heap_text);
     talus_step_report report = TALUS_STEP_REPORT_INIT;
     REQUIRE(talus_engine_report(engine.get(), &report) == TALUS_OK);
@@ -237,4 +237,39 @@ TEST_CASE("C API: the bonds of a column of clay break with slip, and it falls wh
         run_out(bonds + R"(, "softening": {"residualCohesion": 0, "residualFrictionAngle": 15, "slip": 0.001})");
     CHECK(standing == 0);
     CHECK(breaking > 0.2);
+}
+
+TEST_CASE("C API: ground that is too soft for its weight ends the step, which is undone to the last bit") {
+    std::string text = heap_text;
+    const std::string stiffness = R"("youngModulus": 2e6)";
+    const size_t at = text.find(stiffness);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, stiffness.size(), R"("youngModulus": 2e4)");
+    text.insert(text.find(R"("soils")"), R"("gravity": 300, )");
+    const std::string k0 = R"("stress": "k0", "k0": 0.5)";
+    text.replace(text.find(k0), k0.size(), R"("stress": "zero")");
+    const host::Engine engine = host::engine(text.c_str());
+    REQUIRE(talus_engine_step(engine.get(), 1e-3, nullptr) == TALUS_OK);
+    const int64_t before = host::hash(engine);
+    for (int tries = 0; tries < 2; ++tries) {
+        CHECK(talus_engine_step(engine.get(), 1, nullptr) == TALUS_NOT_CONVERGED);
+        CHECK(host::contains(talus_engine_error(engine.get()), "pressed to less than the volume of its grains"));
+        CHECK(host::contains(talus_engine_error(engine.get()), "t = 0.0"));
+        CHECK(host::hash(engine) == before);
+        CHECK(talus_engine_time(engine.get()) == 1e-3);
+    }
+    CHECK(talus_engine_step(engine.get(), 1e-3, nullptr) == TALUS_OK);
+}
+
+TEST_CASE("C API: sand that dilates becomes lighter and is still followed") {
+    std::string text = heap_text;
+    const std::string angle = R"("frictionAngle": 31}})";
+    const size_t at = text.find(angle);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, angle.size(), R"("frictionAngle": 31}, "dilationAngle": 31})");
+    const host::Engine engine = host::engine(text.c_str());
+    talus_step_report report = TALUS_STEP_REPORT_INIT;
+    REQUIRE_MESSAGE(talus_engine_step(engine.get(), 1, &report) == TALUS_OK, talus_engine_error(engine.get()));
+    CHECK(report.dissipated_energy > 0);
+    CHECK(report.peak_velocity < 4);  // sqrt(2 g h) is 2
 }
