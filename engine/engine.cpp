@@ -265,7 +265,7 @@ Status Engine::advance_to(double until, StepReport& report) {
 }
 
 void Engine::State::report_water(WaterBalance& water) const {
-    if (simulation.flow() == nullptr) return;
+    if (!scene->physics.water) return;
     const FlowTotals& totals = simulation.state().flow.totals;
     water.rain = totals[rain_total];
     water.run_off = totals[run_off_total];

@@ -43,8 +43,9 @@ ordered_json left_out(const Scene& scene) {
     list.push_back("gas flow: gas pressure is that of the atmosphere");
     const bool is_dynamic = scene.physics.regime == MotionRegime::dynamic;
     if (!is_dynamic) list.push_back("inertia: equilibrium is quasi-static");
-    if (is_dynamic) list.push_back("pore fluids: they are not supported yet in a dynamic ground");
-    if (!scene.physics.water && !is_dynamic) list.push_back("water: no pore pressure is held, no flow is solved");
+    if (is_dynamic && scene.physics.water)
+        list.push_back("flow through sides: in motion all but the surface is closed");
+    if (!scene.physics.water) list.push_back("water: no pore pressure is held, no flow is solved");
     if (!scene.physics.deforming) list.push_back("deformation: no stress is held, no equilibrium is solved");
     if (scene.ground.kind == GroundKind::column) list.push_back("the horizontal dimension");
     return list;

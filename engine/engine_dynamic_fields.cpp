@@ -13,27 +13,41 @@ struct PointEntry {
     const char* units;
     const char* standard_name;
     int32_t components;
-    bool probed;  ///< whether probes record it
+    bool probed;       ///< whether probes record it
+    bool needs_water;  ///< whether a dry ground has none
 };
 
 constexpr std::array entries{
-    PointEntry{"point_position", "m", "", 2, false},
-    PointEntry{"point_volume", "m2", "", 1, false},
-    PointEntry{"point_soil", "1", "", 1, false},
-    PointEntry{"displacement", "m", "soil__displacement", 2, true},
-    PointEntry{"velocity", "m s-1", "soil__velocity", 2, true},
-    PointEntry{"net_stress", "Pa", "soil__net_stress", 4, true},
-    PointEntry{"total_stress", "Pa", "soil__total_stress", 4, true},
-    PointEntry{"plastic_strain", "1", "soil__plastic_strain", 1, true},
-    PointEntry{"mobilised_strength", "1", "soil__mobilized_strength", 1, true},
+    PointEntry{"point_position", "m", "", 2, false, false},
+    PointEntry{"point_volume", "m2", "", 1, false, false},
+    PointEntry{"point_soil", "1", "", 1, false, false},
+    PointEntry{"point_pressure", "Pa", "soil_water__pressure", 1, false, true},
+    PointEntry{"saturation", "1", "soil_water__saturated_volume_fraction", 1, true, true},
+    PointEntry{"suction", "Pa", "soil_water__suction", 1, true, true},
+    PointEntry{"porosity", "1", "soil__porosity", 1, true, true},
+    PointEntry{"water_content", "1", "soil_water__volume_fraction", 1, true, true},
+    PointEntry{"darcy_flux", "m s-1", "soil_water__darcy_velocity", 2, true, true},
+    PointEntry{"displacement", "m", "soil__displacement", 2, true, false},
+    PointEntry{"velocity", "m s-1", "soil__velocity", 2, true, false},
+    PointEntry{"net_stress", "Pa", "soil__net_stress", 4, true, false},
+    PointEntry{"total_stress", "Pa", "soil__total_stress", 4, true, false},
+    PointEntry{"plastic_strain", "1", "soil__plastic_strain", 1, true, false},
+    PointEntry{"mobilised_strength", "1", "soil__mobilized_strength", 1, true, false},
 };
 
-const PointEntry& find_entry(std::string_view name) {
+bool has(const PointEntry& entry, const DynamicGround& ground) {
+    return !entry.needs_water || ground.mixture() != nullptr;
+}
+
+const PointEntry& find_entry(std::string_view name, const DynamicGround& ground) {
     const auto found =
         std::find_if(entries.begin(), entries.end(), [&](const PointEntry& entry) { return entry.name == name; });
-    if (found != entries.end()) return *found;
-    throw Error(Status::unknown_field, "a dynamic ground has no field '" + std::string(name) +
-                                           "': it has no mesh and no water, only fields of its points (see describe)");
+    if (found == entries.end())
+        throw Error(Status::unknown_field, "a dynamic ground has no field '" + std::string(name) +
+                                               "': it has no mesh, only fields of its points (see describe)");
+    if (!has(*found, ground))
+        throw Error(Status::unknown_field, "field '" + std::string(name) + "' is left out: the scene has no water");
+    return *found;
 }
 
 /// Values of some fields of the points, side by side, by number.
@@ -48,6 +62,51 @@ std::vector<double> by_number(const FreePoints& points, std::initializer_list<Po
     return values;
 }
 
+/// value(point) of every point, by number.
+template <class Value>
+std::vector<double> each_by_number(const FreePoints& points, const Value& value) {
+    std::vector<double> values(points.count);
+    for (size_t p = 0; p < points.count; ++p) values[static_cast<size_t>(points.number[p])] = value(p);
+    return values;
+}
+
+std::vector<double> stresses(const DynamicGround& ground, bool is_total) {
+    std::vector<double> values = by_number(ground.points(), {stress_xx, stress_yy, stress_zz, stress_xy});
+    const DynamicGround::Mixture* mixture = ground.mixture();
+    if (mixture == nullptr) return values;  // net and total stress are the same
+    for (size_t p = 0; p < ground.points().count; ++p) {
+        const double net = mixture->pore_stress(p) - std::max(mixture->pressure(p), 0.0);
+        const double added = is_total ? -mixture->pore_stress(p) : -net;
+        for (size_t k = 0; k < 3; ++k) values[4 * static_cast<size_t>(ground.points().number[p]) + k] += added;
+    }
+    return values;
+}
+
+/// Relative to the solid: n S (v_l - v_s).
+std::vector<double> darcy_flux(const DynamicGround& ground) {
+    const FreePoints& points = ground.points();
+    std::vector<double> values(2 * points.count);
+    for (size_t p = 0; p < points.count; ++p) {
+        const double content = ground.porosity(p) * ground.mixture()->saturation(p);
+        double* flux = &values[2 * static_cast<size_t>(points.number[p])];
+        flux[0] = content * (points[liquid_velocity_x][p] - points[velocity_x][p]);
+        flux[1] = content * (points[liquid_velocity_y][p] - points[velocity_y][p]);
+    }
+    return values;
+}
+
+std::vector<double> derive_water(std::string_view name, const DynamicGround& ground) {
+    const DynamicGround::Mixture& mixture = *ground.mixture();
+    const FreePoints& points = ground.points();
+    if (name == "darcy_flux") return darcy_flux(ground);
+    if (name == "porosity") return each_by_number(points, [&](size_t p) { return ground.porosity(p); });
+    if (name == "saturation") return each_by_number(points, [&](size_t p) { return mixture.saturation(p); });
+    if (name == "suction") return each_by_number(points, [&](size_t p) { return std::max(-mixture.pressure(p), 0.0); });
+    if (name == "water_content")
+        return each_by_number(points, [&](size_t p) { return ground.porosity(p) * mixture.saturation(p); });
+    return each_by_number(points, [&](size_t p) { return mixture.pressure(p); });
+}
+
 std::vector<double> derive(std::string_view name, const DynamicGround& ground) {
     const FreePoints& points = ground.points();
     if (name == "point_position") return by_number(points, {position_x, position_y});
@@ -60,7 +119,8 @@ std::vector<double> derive(std::string_view name, const DynamicGround& ground) {
         for (size_t i = 0; i < values.size(); ++i) values[i] -= ground.start_position()[i];
         return values;
     }
-    return by_number(points, {stress_xx, stress_yy, stress_zz, stress_xy});  // dry: net and total stress are the same
+    if (name == "net_stress" || name == "total_stress") return stresses(ground, name == "total_stress");
+    return derive_water(name, ground);
 }
 
 }  // namespace
@@ -73,7 +133,8 @@ void Engine::State::number_point_soils() {
 
 std::vector<std::string> Engine::State::point_field_names() const {
     std::vector<std::string> names;
-    for (const PointEntry& entry : entries) names.emplace_back(entry.name);
+    for (const PointEntry& entry : entries)
+        if (has(entry, *simulation.dynamic())) names.emplace_back(entry.name);
     return names;
 }
 
@@ -82,7 +143,7 @@ std::vector<std::string> Engine::State::point_quantities() const {
     constexpr std::array tensor{".xx", ".yy", ".zz", ".xy"};
     std::vector<std::string> names;
     for (const PointEntry& entry : entries) {
-        if (!entry.probed) continue;
+        if (!entry.probed || !has(entry, *simulation.dynamic())) continue;
         if (entry.components == 1) names.emplace_back(entry.name);
         for (size_t k = 0; k < static_cast<size_t>(entry.components) && entry.components > 1; ++k)
             names.push_back(std::string(entry.name) + (entry.components == 2 ? plane[k] : tensor[k]));
@@ -91,7 +152,7 @@ std::vector<std::string> Engine::State::point_quantities() const {
 }
 
 FieldView Engine::State::view_points(std::string_view field) const {
-    const PointEntry& entry = find_entry(field);
+    const PointEntry& entry = find_entry(field, *simulation.dynamic());
     FieldView view;
     view.name = entry.name;
     view.units = entry.units;

@@ -121,29 +121,68 @@ std::array<double, 4> stress_at(const Mesh& mesh, const Points& points, const Ce
     return stress;
 }
 
-FreePoints make_free_points(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Walls& walls) {
+SeededPoints make_free_points(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Walls& walls) {
     std::vector<double> density;
     for (const Soil& soil : scene.soils) density.push_back(soil.dry_density);
     const double corner = walls.left.kind != WallKind::none ? walls.left.place : walls.right.place;
     SeededPoints seeded = seed_points(mesh, find_cell_size(scene, walls), {corner, walls.base.place}, density);
-    if (scene.initial.stress == InitialStress::zero) return std::move(seeded.points);
+    if (scene.initial.stress == InitialStress::zero) return seeded;
     const Locator locator(mesh);
     for (size_t p = 0; p < seeded.points.count; ++p) {
         const CellPlace place = locator.locate(seeded.points[position_x][p], seeded.points[position_y][p]);
         const std::array<double, 4> stress = stress_at(mesh, mesh_points, place, seeded.cell[p]);
         for (const size_t k : {0, 1, 2, 3}) seeded.points.field[stress_xx + k][p] = stress[k];
     }
-    return std::move(seeded.points);
+    return seeded;
 }
 
-ExplicitMotion make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points, int32_t threads) {
-    const Walls walls = find_walls(scene, mesh);
-    return {find_cell_size(scene, walls),
-            walls,
-            scene.gravity,
-            explicit_soils(scene),
-            make_free_points(scene, mesh, mesh_points, walls),
-            threads};
+// --- water -----------------------------------------------------------------------------------------------------------
+
+ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
+    ExplicitHydraulics hydraulics;
+    hydraulics.grain_density = soil.dry_density / (1 - soil.porosity);
+    hydraulics.mobility = soil.hydraulics.conductivity.along / (scene.water.density * scene.gravity);
+    const Strength& strength = soil.solid.strength;
+    if (strength.model == StrengthModel::fredlund)
+        hydraulics.suction_tangent = tan_degrees(strength.suction_friction_angle);
+    if (strength.model == StrengthModel::vanapalli) {
+        hydraulics.suction_tangent = tan_degrees(strength.friction_angle);
+        hydraulics.weighs_suction = true;
+    }
+    return hydraulics;
+}
+
+/// Pressure at a place, from the mesh's nodes; outside the mesh, of the given cell's first node.
+double pressure_at(const Mesh& mesh, std::span<const double> pressure, const CellPlace& place, int32_t cell) {
+    const auto found = static_cast<size_t>(place.cell >= 0 ? place.cell : cell);
+    const int32_t* nodes = &mesh.cell_nodes[static_cast<size_t>(mesh.cell_start[found])];
+    if (place.cell < 0) return pressure[static_cast<size_t>(nodes[0])];
+    double value = 0;
+    with_shape(mesh.cell_start[found + 1] - mesh.cell_start[found], [&](auto shape) {
+        using Shape = decltype(shape);
+        typename Shape::Natural at{};
+        std::copy_n(place.natural.begin(), Shape::dimension, at.begin());
+        const auto share = Shape::values(at);
+        for (size_t a = 0; a < Shape::nodes; ++a) value += share[a] * pressure[static_cast<size_t>(nodes[a])];
+    });
+    return value;
+}
+
+/// The water that each point holds at the pressure of the place it lies in.
+void fill_with_water(const Scene& scene, const Mesh& mesh, std::span<const double> pressure,
+                     const std::vector<int32_t>& cell, FreePoints& points) {
+    std::vector<HydraulicTable> tables;
+    for (const Soil& soil : scene.soils) tables.emplace_back(soil.hydraulics);
+    for (size_t f = dry_fields; f < point_fields; ++f) points.field[f].assign(points.count, 0.0);
+    const Locator locator(mesh);
+    for (size_t p = 0; p < points.count; ++p) {
+        const CellPlace place = locator.locate(points[position_x][p], points[position_y][p]);
+        const double here = pressure_at(mesh, pressure, place, cell[p]);
+        const auto soil = static_cast<size_t>(points.soil[p]);
+        const double saturation =
+            tables[soil].at(here).saturation * (1 + std::max(here, 0.0) / scene.water.bulk_modulus);
+        points[water_mass][p] = scene.water.density * scene.soils[soil].porosity * saturation * points[point_volume][p];
+    }
 }
 
 double sum(const Energies& energies) { return energies.kinetic + energies.elastic + energies.potential; }
@@ -169,12 +208,37 @@ bool is_finite(const FreePoints& points, PointField name) {
 
 }  // namespace
 
-DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, int32_t threads)
+DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points,
+                                                 std::span<const double> pressure, int32_t threads) {
+    const Walls walls = find_walls(scene, mesh);
+    const double cell_size = find_cell_size(scene, walls);
+    SeededPoints seeded = make_free_points(scene, mesh, mesh_points, walls);
+    if (pressure.empty()) {
+        return Motion(std::in_place_type<ExplicitMotion>, cell_size, walls, scene.gravity, explicit_soils(scene),
+                      std::move(seeded.points), threads);
+    }
+    fill_with_water(scene, mesh, pressure, seeded.cell, seeded.points);
+    std::vector<ExplicitHydraulics> hydraulics;
+    std::vector<SaturationTable> tables;
+    for (const Soil& soil : scene.soils) {
+        hydraulics.push_back(explicit_hydraulics(soil, scene));
+        tables.emplace_back(soil.hydraulics);
+    }
+    const bool is_net = scene.physics.stress == StressMeasure::net;
+    const ExplicitWater water{scene.water.density, scene.water.bulk_modulus,
+                              is_net ? PoreStress::net : PoreStress::bishop};
+    return Motion(std::in_place_type<Mixture>, cell_size, walls, scene.gravity, explicit_soils(scene),
+                  std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads);
+}
+
+DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points,
+                             std::span<const double> pressure, int32_t threads)
     : soils_(explicit_soils(scene)),
-      motion_(make_motion(scene, mesh, mesh_points, threads)),
-      start_energy_(sum(motion_.energies())) {
+      motion_(make_motion(scene, mesh, mesh_points, pressure, threads)),
+      water_density_(scene.water.density) {
+    start_energy_ = std::visit([](const auto& motion) { return sum(motion.energies()); }, motion_);
     for (const Soil& soil : scene.soils) grain_density_.push_back(soil.dry_density / (1 - soil.porosity));
-    const FreePoints& points = motion_.points();
+    const FreePoints& points = this->points();
     start_position_.resize(2 * points.count);
     for (size_t p = 0; p < points.count; ++p) {
         const auto number = static_cast<size_t>(points.number[p]);
@@ -184,44 +248,81 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
 }
 
 // The macro step of a dynamic ground: substeps of equal length, as long as the fastest wave and the fastest motion allow.
-bool DynamicGround::advance(double from, double until, const Cancelled& cancelled) {
-    motion_.restart();  // what follows depends on the points alone
+bool DynamicGround::advance(double from, double until, const RainAt& rain, const Cancelled& cancelled) {
     substeps_ = 0;
     peak_velocity_ = 0;
+    std::visit([](auto& motion) { motion.restart(); }, motion_);  // what follows depends on the points alone
+    if (auto* mixture = std::get_if<Mixture>(&motion_)) mixture->set_rain(rain);
+    return std::visit([&](auto& motion) { return move(motion, from, until, cancelled); }, motion_);
+}
+
+template <class Moving>
+bool DynamicGround::move(Moving& motion, double from, double until, const Cancelled& cancelled) {
     double time = from;
     while (time < until) {
         const double left = until - time;
-        const double count = std::ceil(left / motion_.critical_step());
+        const double count = std::ceil(left / motion.critical_step());
         const bool is_last = count <= 1;
         const double next = is_last ? until : time + left / count;
         if (!(next > time)) stop(time, "the motion became too fast to be followed");
         const bool looks = is_last || substeps_ % substeps_a_look == substeps_a_look - 1;
-        if (!motion_.step(next - time, looks))
+        if (!motion.step(next - time, looks))
             stop(next, "ground moved across several cells in a substep, or its velocity came to no number");
         ++substeps_;
         time = next;
         if (!looks) continue;
-        look(time);
+        look(motion, time);
         if (cancelled((time - from) / (until - from))) return false;
     }
     return true;
 }
 
-void DynamicGround::look(double time) {
-    const FreePoints& points = motion_.points();
+template <class Moving>
+void DynamicGround::look(const Moving& motion, double time) {
+    const FreePoints& points = motion.points();
     for (const PointField name :
          {position_x, position_y, velocity_x, velocity_y, stress_xx, stress_yy, stress_zz, stress_xy, point_volume}) {
         if (!is_finite(points, name)) stop(time, "the state of the ground came to no number");
     }
     check_pores(time);
-    if (static_cast<double>(motion_.grid().nodes()) > most_nodes)
+    if (static_cast<double>(motion.grid().nodes()) > most_nodes)
         stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");
     peak_velocity_ = std::max(peak_velocity_, largest_speed(points));
 }
 
+void DynamicGround::restore(const FreePoints& points) {
+    std::visit([&](auto& motion) { motion.points() = points; }, motion_);
+}
+
+const FreePoints& DynamicGround::points() const {
+    return std::visit([](const auto& motion) -> const FreePoints& { return motion.points(); }, motion_);
+}
+
+double DynamicGround::cell_size() const {
+    return std::visit([](const auto& motion) { return motion.grid().cell_size; }, motion_);
+}
+
+double DynamicGround::water() const {
+    if (mixture() == nullptr) return 0;
+    double sum = 0;
+    for (const PointField name : {water_mass, water_due})
+        for (size_t p = 0; p < points().count; ++p) sum += points()[name][p];
+    return sum / water_density_;
+}
+
+double DynamicGround::porosity(size_t point) const {
+    const double grains = grain_density_[static_cast<size_t>(points().soil[point])] * points()[point_volume][point];
+    return 1 - points()[solid_mass][point] / grains;
+}
+
+WaterExchange DynamicGround::water_exchange() const {
+    if (mixture() == nullptr) return {};
+    return {mixture()->rained() / water_density_, mixture()->seepage() / water_density_};
+}
+
 /// Grains keep their volume: no ground is denser than they are.
 void DynamicGround::check_pores(double time) const {
-    const FreePoints& points = motion_.points();
+    const FreePoints& points = this->points();
     for (size_t p = 0; p < points.count; ++p) {
         const double grains = grain_density_[static_cast<size_t>(points.soil[p])] * points[point_volume][p];
         if (points[solid_mass][p] <= grains) continue;
@@ -231,10 +332,10 @@ void DynamicGround::check_pores(double time) const {
 }
 
 MotionReport DynamicGround::report() const {
-    const FreePoints& points = motion_.points();
+    const FreePoints& points = this->points();
     MotionReport report;
     report.substeps = substeps_;
-    const Energies energies = motion_.energies();
+    const Energies energies = std::visit([](const auto& motion) { return motion.energies(); }, motion_);
     report.kinetic_energy = energies.kinetic;
     report.elastic_energy = energies.elastic;
     report.potential_energy = energies.potential;
@@ -266,7 +367,7 @@ MotionReport DynamicGround::report() const {
 }
 
 std::vector<double> DynamicGround::mobilised_strength() const {
-    const FreePoints& points = motion_.points();
+    const FreePoints& points = this->points();
     std::vector<double> mobilised(points.count, 0.0);
     MaterialBlock block;
     for (size_t first = 0; first < points.count; first += block_size) {

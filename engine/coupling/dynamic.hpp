@@ -4,31 +4,51 @@
 #include "coupling/motion_report.hpp"
 #include "coupling/progress.hpp"
 #include "ground/mesh.hpp"
+#include "motion/explicit/explicit_mixture.hpp"
 #include "motion/explicit/explicit_motion.hpp"
 #include "points/points.hpp"
 #include "scene/scene.hpp"
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace talus {
 
+/// Rain at each x (m): a volume per horizontal area, m/s.
+using RainAt = std::function<double(double x)>;
+
+/// Water that went in and out of the ground in the last advance, m3 per metre of thickness.
+struct WaterExchange {
+    double rain = 0;
+    double seepage = 0;
+};
+
 class DynamicGround {
 public:
-    /// Cuts the points out of the mesh; they take their stress from the mesh's points, where these have one. Throws Error(invalid_scene)
-    /// where a wall is not a straight side along an axis.
-    DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, int32_t threads);
+    using Mixture = ExplicitMixture<Filling::unsaturated>;
+
+    /// Cuts the points out of the mesh; they take their stress from the mesh's points, where these have one, and their water from the
+    /// pressure at the mesh's nodes (Pa; empty: dry). Throws Error(invalid_scene) where a wall is not a straight side along an axis.
+    DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, std::span<const double> pressure,
+                  int32_t threads);
 
     /// Carries the points from one time to another, s. False when `cancelled` said so. Throws Error(not_converged) where the motion
     /// comes to no number, the ground is pressed to less than its grains or it spreads beyond all bounds. In both cases the caller puts the points back.
-    bool advance(double from, double until, const Cancelled& cancelled);
+    bool advance(double from, double until, const RainAt& rain, const Cancelled& cancelled);
 
     /// As they were, to the last bit.
-    void restore(const FreePoints& points) { motion_.points() = points; }
+    void restore(const FreePoints& points);
 
-    [[nodiscard]] const FreePoints& points() const { return motion_.points(); }
-    [[nodiscard]] double cell_size() const { return motion_.grid().cell_size; }
+    [[nodiscard]] const FreePoints& points() const;
+    [[nodiscard]] double cell_size() const;
+    [[nodiscard]] const Mixture* mixture() const { return std::get_if<Mixture>(&motion_); }  ///< none: dry
+    [[nodiscard]] double water() const;  ///< in the ground, m3 per metre of thickness; 0: dry
+    [[nodiscard]] WaterExchange water_exchange() const;
+    [[nodiscard]] double porosity(size_t point) const;
     [[nodiscard]] MotionReport report() const;
 
     /// Where each point lay at the start, by its number: x, y, m.
@@ -37,11 +57,18 @@ public:
     [[nodiscard]] std::vector<double> mobilised_strength() const;
 
 private:
-    void look(double time);
+    using Motion = std::variant<ExplicitMotion, Mixture>;
+    static Motion make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points,
+                              std::span<const double> pressure, int32_t threads);
+    template <class Moving>
+    bool move(Moving& motion, double from, double until, const Cancelled& cancelled);
+    template <class Moving>
+    void look(const Moving& motion, double time);
     void check_pores(double time) const;
 
     std::vector<ExplicitSoil> soils_;
-    ExplicitMotion motion_;
+    Motion motion_;
+    double water_density_ = 0;           // kg/m3
     std::vector<double> grain_density_;  // per soil, kg/m3
     std::vector<double> start_position_;
     double start_energy_ = 0;   // J

@@ -292,8 +292,11 @@ EquilibriumOutcome Simulation::find_initial_stress(const Loads& loads) {
 
 // What moves are the points alone: the mesh and its equilibrium have served.
 void Simulation::make_dynamic(int32_t threads) {
-    dynamic_ = std::make_unique<DynamicGround>(scene_, mesh_, state_.points, threads);
+    dynamic_ = std::make_unique<DynamicGround>(scene_, mesh_, state_.points, state_.flow.pressure, threads);
     equilibrium_.reset();
+    integrator_.reset();
+    flow_.reset();
+    initial_water_ = dynamic_->water();
     motion_unknowns_ = 0;
     state_ = {};
 }

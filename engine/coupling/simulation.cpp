@@ -20,11 +20,7 @@ std::string at_time(double time) { return "t = " + value_text(time) + " s: "; }
 
 // The macro step. Everything that a host step does is named here once.
 bool Simulation::advance(double until, const Cancelled& cancelled) {
-    if (dynamic_) {
-        const bool is_done = dynamic_->advance(state_.time, until, cancelled);
-        state_.time = until;
-        return is_done;
-    }
+    if (dynamic_) return advance_dynamically(until, cancelled);
     const double from = state_.time;
     const double whole = until - from;
     const std::vector<double> displacement_before = state_.displacement;
@@ -67,6 +63,34 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
     return true;
 }
 
+// A dynamic ground: from one change of the rain to the next.
+bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
+    const double from = state_.time;
+    while (state_.time < until) {
+        const double stop = forcing.next_break(state_.time, until);
+        const double start = state_.time;
+        const auto watched = [&](double fraction) {
+            return cancelled((start + fraction * (stop - start) - from) / (until - from));
+        };
+        if (!dynamic_->advance(
+                start, stop, [this, start](double x) { return rain_at(x, start); }, watched))
+            return false;
+        const WaterExchange water = dynamic_->water_exchange();
+        state_.flow.totals[rain_total] += water.rain;
+        state_.flow.totals[seepage_total] += water.seepage;
+        state_.time = stop;
+    }
+    return true;
+}
+
+double Simulation::rain_at(double x, double time) const {
+    for (size_t zone = 0; zone < scene_.surface.zones.size(); ++zone) {
+        const RainZone& here = scene_.surface.zones[zone];
+        if (x >= here.x_from && x < here.x_to) return forcing.rain(zone, time);
+    }
+    return 0;
+}
+
 // What was expected of the skeleton may be what stopped the solvers, and is the less wrong the shorter the exchange.
 void Simulation::shorten_exchange(double duration, double whole, const std::string& problem) {
     state_.exchange_step = 0.25 * duration;
@@ -104,6 +128,7 @@ void Simulation::restore(const GroundState& state) {
 }
 
 double Simulation::water_now() const {
+    if (dynamic_) return dynamic_->water();
     hold_skeleton();
     flow_->evaluate(0.0, state_.flow.pressure);
     double sum = 0;

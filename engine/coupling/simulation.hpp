@@ -83,6 +83,9 @@ public:
     [[nodiscard]] const DynamicGround* dynamic() const { return dynamic_.get(); }  ///< nullptr: quasi-static
 
 private:
+    bool advance_dynamically(double until, const Cancelled& cancelled);
+    [[nodiscard]] double rain_at(double x, double time) const;  ///< m/s, 0 where no zone is
+
     enum class Exchange { agreed, cancelled, disagreed, flow_stopped, equilibrium_lost };
 
     // initial state (initial.cpp)

@@ -84,9 +84,10 @@ enum Regime {
   quasiStatic @0;
   # From equilibrium to equilibrium, without inertia: for ground that stands.
   dynamic @1;
-  # By its momentum, with inertia and motion of any size: for ground that fails, slides and comes to rest. So far of dry plane
+  # By its momentum, with inertia and motion of any size: for ground that fails, slides and comes to rest. So far of plane
   # ground that deforms, between walls: each of `base`, `left` and `right` with a `motion` is a plane wall along an axis, which goes on
-  # beyond the ground. Ground that leaves a side without a wall moves freely.
+  # beyond the ground. Ground that leaves a side without a wall moves freely. Where there is
+  # water it has a velocity of its own; the surface takes rain and lets water out, all other sides are closed as soon as the ground moves.
 }
 
 enum StressMeasure {

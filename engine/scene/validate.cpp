@@ -9,6 +9,42 @@
 namespace talus {
 namespace {
 
+/// What water in a dynamic ground cannot do yet.
+void check_moving_water(const Check& check, const Scene& scene) {
+    const std::string dynamic = " is not supported yet where the regime is dynamic";
+    for (size_t i = 0; i < scene.soils.size(); ++i) {
+        const Check soil = check.at("soils", i);
+        const Conductivity& conductivity = scene.soils[i].hydraulics.conductivity;
+        soil.at("hydraulics")
+            .at("conductivity")
+            .at("across")
+            .require(
+                !(conductivity.across != conductivity.along),
+                "= " + value_text(conductivity.across) + " m/s: another conductivity than along the bedding" + dynamic);
+        soil.at("hydraulics")
+            .at("conductivity")
+            .at("porosityDependence")
+            .require(conductivity.porosity_dependence == PorosityDependence::none,
+                     "= kozenyCarman:" + dynamic + "; must be none");
+        soil.at("solid")
+            .at("strength")
+            .at("model")
+            .require(scene.soils[i].solid.strength.model != StrengthModel::exponential,
+                     "= exponential:" + dynamic + "; must be constant, fredlund or vanapalli");
+    }
+    for (size_t i = 0; i < scene.boundaries.size(); ++i) {
+        const Boundary& boundary = scene.boundaries[i];
+        check.at("boundaries", i)
+            .at("motion")
+            .require(!(boundary.has_motion && boundary.motion == MotionCondition::friction),
+                     "= friction: under ground that holds water" + dynamic + "; must be free, roller or fixed");
+    }
+    check.at("surface")
+        .at("pondingDepth")
+        .require(scene.surface.ponding_depth == 0,
+                 "= " + value_text(scene.surface.ponding_depth) + " m:" + dynamic + "; must be 0");
+}
+
 /// What a dynamic ground cannot do yet.
 void check_regime(const Check& check, const Scene& scene) {
     const Check cell_size = check.at("dynamics").at("cellSize");
@@ -16,12 +52,10 @@ void check_regime(const Check& check, const Scene& scene) {
         return cell_size.unused(given_positive(scene.dynamics.cell_size), "a ground whose regime is not dynamic");
     cell_size.needed(given_positive(scene.dynamics.cell_size), "a dynamic ground");
     const Check physics = check.at("physics");
-    physics.at("water").require(!scene.physics.water,
-                                "= true: must be false where the regime is dynamic; pore water in a dynamic ground is "
-                                "not supported yet");
     physics.at("deforming").require(scene.physics.deforming, "= false: must be true where the regime is dynamic");
     physics.at("regime").require(scene.ground.kind != GroundKind::column,
                                  "= dynamic: must be quasiStatic in a column; a dynamic ground is a section or a mesh");
+    if (scene.physics.water) check_moving_water(check, scene);
 }
 
 void check_physics(const Check& check, const Scene& scene) {

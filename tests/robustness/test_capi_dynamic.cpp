@@ -38,6 +38,27 @@ const char* const slope_text = R"({
     "dynamics": {"cellSize": 0.5}
 })";
 
+/// A bank of wet soil that stands in the rain, its water table below the toe.
+const char* const wet_text = R"({
+    "name": "wet",
+    "physics": {"regime": "dynamic"},
+    "water": {"bulkModulus": 1e8},
+    "soils": [{"name": "soil", "dryDensity": 1800, "porosity": 0.4,
+               "hydraulics": {"retention": {"model": "vanGenuchten", "alpha": 4e-05, "n": 1.2},
+                              "conductivity": {"along": 1e-04}},
+               "solid": {"youngModulus": 10e6, "poissonRatio": 0.3,
+                         "strength": {"model": "vanapalli", "cohesion": 12e3, "frictionAngle": 30}}}],
+    "ground": {"section": {"terrain": [[0, 6], [4, 6], [10, 3], [14, 3]], "base": [[0, 0], [14, 0]],
+                           "layers": [{"soil": "soil"}], "columnWidth": 0.5, "surfaceCellHeight": 0.5, "growth": 1,
+                           "largestCellHeight": 0.5}},
+    "boundaries": [{"side": "base", "motion": "fixed"}, {"side": "left", "motion": "roller"},
+                   {"side": "right", "motion": "roller"}],
+    "surface": {"zones": [{"name": "rain", "time": [0, 0.2], "rate": [1e-4, 0]}]},
+    "initial": {"flow": "hydrostatic", "waterTable": 2},
+    "dynamics": {"cellSize": 0.5},
+    "probes": [{"name": "A", "place": [5, 4]}]
+})";
+
 std::vector<double> read(const host::Engine& engine, const char* field) {
     const talus_field shape = host::view(engine, field);
     std::vector<double> values(static_cast<size_t>(shape.shape[0] * (shape.rank == 2 ? shape.shape[1] : 1)));
@@ -272,4 +293,38 @@ TEST_CASE("C API: sand that dilates becomes lighter and is still followed") {
     REQUIRE_MESSAGE(talus_engine_step(engine.get(), 1, &report) == TALUS_OK, talus_engine_error(engine.get()));
     CHECK(report.dissipated_energy > 0);
     CHECK(report.peak_velocity < 4);  // sqrt(2 g h) is 2
+}
+
+TEST_CASE("C API: wet ground in motion takes the rain, loses no water, and an undone step leaves no trace") {
+    Impatient impatient;
+    talus_options options = TALUS_OPTIONS_INIT;
+    options.progress = Impatient::progress;
+    options.progress_user = &impatient;
+    const host::Engine engine = host::engine(wet_text, &options), twin = host::engine(wet_text);
+    talus_step_report report = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_step(engine.get(), 0.1, &report) == TALUS_OK);
+    impatient.limit = impatient.calls + 3;
+    CHECK(talus_engine_step(engine.get(), 0.2, &report) == TALUS_CANCELLED);
+    REQUIRE(talus_engine_step(engine.get(), 0.2, &report) == TALUS_OK);
+    talus_step_report plain = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_step(twin.get(), 0.1, &plain) == TALUS_OK);
+    REQUIRE(talus_engine_step(twin.get(), 0.2, &plain) == TALUS_OK);
+    CHECK(read(engine, "point_pressure") == read(twin, "point_pressure"));
+    CHECK(report.water_stored == plain.water_stored);
+
+    CHECK(report.regime == TALUS_DYNAMIC);
+    CHECK(report.water_rain == doctest::Approx(1e-4 * 0.2 * 14).epsilon(1e-9));
+    CHECK(std::abs(report.water_residual) < 1e-12 * report.water_stored);
+    CHECK(report.largest_displacement < 0.01);
+    const std::vector<double> place = read(engine, "point_position"), pressure = read(engine, "point_pressure"),
+                              saturation = read(engine, "saturation"), net = read(engine, "net_stress"),
+                              total = read(engine, "total_stress");
+    for (size_t p = 0; p < pressure.size(); ++p) {
+        CHECK(saturation[p] > 0.5);
+        CHECK(saturation[p] <= 1.0);
+        CHECK(total[4 * p] == doctest::Approx(net[4 * p] - std::max(pressure[p], 0.0)));
+        const double hydrostatic = 9810 * (2 - place[2 * p + 1]);
+        if (place[2 * p + 1] < 2) CHECK(std::abs(pressure[p] - hydrostatic) < 0.5 * 9810 * 0.5);
+    }
+    CHECK(read(engine, "darcy_flux").size() == place.size());
 }

@@ -115,6 +115,7 @@ void ExplicitMixture<filling>::restart() {
     nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
     nodes_.grid.cells = {};
     restarted_ = true;
+    nodes_.rained = nodes_.seepage = 0;
     arrange_points();
     std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
@@ -210,9 +211,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
             return_stresses(points_, first, count, material);
         }
         for (size_t k = 0; k < count; ++k) {
-            const double borne = water_.pore_stress == PoreStress::bishop ? water.effective_saturation[k] : 0.0;
-            const double pore_stress =
-                filling == Filling::saturated || water.pressure[k] > 0 ? water.pressure[k] : borne * water.pressure[k];
+            const double pore_stress = this->pore_stress(water, k);
             total_xx[k] = points_[stress_xx][first + k] - pore_stress;
             total_yy[k] = points_[stress_yy][first + k] - pore_stress;
         }
@@ -357,6 +356,20 @@ double ExplicitMixture<filling>::pressure(size_t point) const {
     WaterBlock water;
     find_water(point, 1, water);
     return water.pressure[0];
+}
+
+template <Filling filling>
+double ExplicitMixture<filling>::pore_stress(const WaterBlock& water, size_t k) const {
+    const double pressure = water.pressure[k];
+    if (filling == Filling::saturated || pressure > 0) return pressure;
+    return water_.pore_stress == PoreStress::bishop ? water.effective_saturation[k] * pressure : 0.0;
+}
+
+template <Filling filling>
+double ExplicitMixture<filling>::pore_stress(size_t point) const {
+    WaterBlock water;
+    find_water(point, 1, water);
+    return pore_stress(water, 0);
 }
 
 template <Filling filling>

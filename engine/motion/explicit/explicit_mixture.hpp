@@ -49,20 +49,22 @@ public:
 
     /// As ExplicitMotion's. The water of the ground is the points' own and what is due to them.
     bool step(double dt, bool is_last);
-    void restart();
+    void restart();  ///< as ExplicitMotion's; what rained and seeped is counted from here on
     [[nodiscard]] double critical_step() const;
     [[nodiscard]] Energies energies() const;  ///< of both phases; elastic: the skeleton's
 
     void set_edge_pressure(double pressure) { nodes_.edge_pressure = pressure; }  ///< Pa
     /// Rain from now on: a volume per horizontal area, m/s, at each x (m).
     void set_rain(std::function<double(double x)> rate);
-    [[nodiscard]] double rained() const { return nodes_.rained; }  ///< kg
+    [[nodiscard]] double rained() const { return nodes_.rained; }  ///< kg, since restart()
     void set_immersed(bool immersed) { nodes_.immersed = immersed; }
     [[nodiscard]] double seepage() const { return nodes_.seepage; }  ///< kg
 
     /// Pore pressure of a point, Pa.
     [[nodiscard]] double pressure(size_t point) const;
     [[nodiscard]] double saturation(size_t point) const;
+    /// What the points' stress is short of the total one, Pa.
+    [[nodiscard]] double pore_stress(size_t point) const;
 
     [[nodiscard]] const FreePoints& points() const { return points_; }
     [[nodiscard]] FreePoints& points() { return points_; }
@@ -74,6 +76,7 @@ private:
     };
 
     void arrange_points();
+    [[nodiscard]] double pore_stress(const WaterBlock& water, size_t k) const;
     void find_wave_speed();
     void fall_rain();
     void owe_water(Strip strip);
