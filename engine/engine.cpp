@@ -62,6 +62,8 @@ EventKind event_kind(HappeningKind kind) {
         case HappeningKind::ponding_ended: return EventKind::ponding_ended;
         case HappeningKind::seepage_started: return EventKind::seepage_started;
         case HappeningKind::loss_of_equilibrium: return EventKind::loss_of_equilibrium;
+        case HappeningKind::motion_started: return EventKind::motion_started;
+        case HappeningKind::came_to_rest: return EventKind::came_to_rest;
         case HappeningKind::rain_ended: return EventKind::rain_ended;
     }
     return EventKind::rain_ended;
@@ -77,6 +79,10 @@ std::string event_message(const Happening& happening) {
         case HappeningKind::seepage_started: return "water comes out of the surface" + when + where;
         case HappeningKind::loss_of_equilibrium:
             return "no equilibrium exists any more: the ground fails" + when + where;
+        case HappeningKind::motion_started: return "the ground moves by its momentum" + when + where;
+        case HappeningKind::came_to_rest:
+            return "the ground rests" + when + ", its front at x = " + value_text(happening.place[0]) + " m; " +
+                   value_text(happening.value) + " m3 per metre of thickness moved by more than a cell";
         case HappeningKind::rain_ended: return "the rain series ended" + when + "; its last rate is held";
     }
     return {};
@@ -256,7 +262,10 @@ Status Engine::advance_to(double until, StepReport& report) {
     last.least_factor_of_safety = state.simulation.least_factor_of_safety();
     last.seconds_flow = counts.seconds_flow;
     last.seconds_motion = counts.seconds_motion;
-    if (state.simulation.dynamic() != nullptr) state.report_motion();
+    if (state.simulation.dynamic() != nullptr) {
+        if (state.point_soil.empty()) state.follow_points();
+        state.report_motion();
+    }
     state.tell_happenings();
     state.record_probes();
     last.seconds_total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -35,6 +35,7 @@ enum class Regime : int32_t {
     quasi_static = 0,
     equilibrium_lost = 1,  ///< failure was found: the skeleton stands as it was, the flow goes on
     dynamic = 2,           ///< the ground moves by its momentum
+    at_rest = 3,           ///< it failed, moved and rests: it lies as it came to lie, and no water moves
 };
 
 struct StepReport {
@@ -63,6 +64,8 @@ enum class EventKind : int32_t {
     seepage_started = 4,      ///< water comes out of the surface
     loss_of_equilibrium = 5,  ///< no equilibrium exists: failure
     rain_ended = 6,           ///< the step went past the end of the rain series
+    motion_started = 7,       ///< the ground that failed moves by its momentum
+    came_to_rest = 8,         ///< the ground that moved rests
 };
 
 struct Event {

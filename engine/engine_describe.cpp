@@ -41,7 +41,7 @@ ordered_json text_or_null(const char* text) { return text != nullptr ? ordered_j
 ordered_json left_out(const Scene& scene) {
     ordered_json list = ordered_json::array();
     list.push_back("gas flow: gas pressure is that of the atmosphere");
-    const bool is_dynamic = scene.physics.regime == MotionRegime::dynamic;
+    const bool is_dynamic = scene.physics.regime != MotionRegime::quasi_static;
     if (!is_dynamic) list.push_back("inertia: equilibrium is quasi-static");
     if (is_dynamic && scene.physics.water)
         list.push_back("flow through sides: in motion all but the surface is closed");

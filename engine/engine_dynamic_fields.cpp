@@ -1,4 +1,5 @@
 // The fields of a dynamic ground: those of its material points, in the order of their numbers, which never changes.
+#include "background/shape.hpp"
 #include "engine_state.hpp"
 #include "error.hpp"
 
@@ -131,6 +132,32 @@ void Engine::State::number_point_soils() {
     for (size_t p = 0; p < points.count; ++p) point_soil[static_cast<size_t>(points.number[p])] = points.soil[p];
 }
 
+void Engine::State::follow_points() {
+    number_point_soils();
+    const Mesh& mesh = simulation.mesh();
+    for (ProbeTrack& probe : probes) {
+        const auto cell = static_cast<size_t>(probe.cell_place.cell);
+        const int32_t first = mesh.cell_start[cell];
+        with_shape(mesh.cell_start[cell + 1] - first, [&](auto shape) {
+            using Shape = decltype(shape);
+            if constexpr (Shape::dimension == 2) {
+                typename Shape::Natural at{};
+                std::copy_n(probe.cell_place.natural.begin(), Shape::dimension, at.begin());
+                const auto places =
+                    gather_places<Shape>(mesh.position.data(), &mesh.cell_nodes[static_cast<size_t>(first)]);
+                const auto [x, y] = place_in_cell<Shape>(places, at);
+                probe.point = nearest_point(x, y);
+            }
+        });
+    }
+    description = describe();
+}
+
+bool Engine::State::has_point_field(std::string_view name) const {
+    const std::vector<std::string> names = point_field_names();
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::vector<std::string> Engine::State::point_field_names() const {
     std::vector<std::string> names;
     for (const PointEntry& entry : entries)
@@ -188,7 +215,7 @@ void Engine::State::copy_row(const FieldView& field, int32_t point, std::span<do
 
 void Engine::State::report_motion() {
     const MotionReport motion = simulation.dynamic()->report();
-    report.regime = Regime::dynamic;
+    report.regime = simulation.state().rests ? Regime::at_rest : Regime::dynamic;
     report.motion = motion;
     report.largest_displacement = motion.largest_displacement;
     report.largest_velocity = motion.largest_velocity;

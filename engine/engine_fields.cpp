@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -244,19 +245,25 @@ ProbeTrack Engine::State::make_probe(const std::string& name, Place place) const
 void Engine::State::record(ProbeTrack& probe) const {
     size_t quantity = 0;
     std::array<double, 4> values{};
+    const auto name_of = [this](size_t k) {
+        return std::string_view(quantities[k]).substr(0, quantities[k].find('.'));
+    };
     while (quantity < quantities.size()) {
-        const std::string_view name = std::string_view(quantities[quantity]).substr(0, quantities[quantity].find('.'));
-        const FieldView field = view(name);
-        const auto components = static_cast<size_t>(field.components);
-        const std::span<double> row = std::span(values).first(components);
-        if (probe.point >= 0) {
-            copy_row(field, probe.point, row);
-        } else {
-            sample_cell(field, probe.cell_place, row);
-        }
-        for (size_t k = 0; k < components; ++k) probe.history[quantity + k].push_back(values[k]);
-        quantity += components;
+        const std::string_view name = name_of(quantity);
+        size_t next = quantity + 1;
+        while (next < quantities.size() && name_of(next) == name) ++next;
+        const std::span<double> row = std::span(values).first(next - quantity);
+        record_row(probe, name, row);
+        for (const double value : row) probe.history[quantity++].push_back(value);
     }
+}
+
+/// The values of a field at a probe; no number where the ground that the probe is in has come to lack the field.
+void Engine::State::record_row(const ProbeTrack& probe, std::string_view name, std::span<double> row) const {
+    if (simulation.dynamic() == nullptr) return sample_cell(view(name), probe.cell_place, row);
+    const std::string_view at_points = name == "pressure" ? "point_pressure" : name;
+    if (probe.point >= 0 && has_point_field(at_points)) return copy_row(view(at_points), probe.point, row);
+    std::fill(row.begin(), row.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
 void Engine::State::record_probes() {

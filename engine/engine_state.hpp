@@ -54,12 +54,16 @@ struct Engine::State {
     [[nodiscard]] std::vector<std::string> probe_quantities() const;
     void record_probes();
     void record(ProbeTrack& probe) const;
+    void record_row(const ProbeTrack& probe, std::string_view name, std::span<double> row) const;
     /// A probe without a history yet; it has neither cell nor point where the place lies outside the ground.
     [[nodiscard]] ProbeTrack make_probe(const std::string& name, Place place) const;
 
     // engine_dynamic_fields.cpp
     void number_point_soils();
+    /// A ground of a mesh has come to be one of points: probes go on with the points nearest to them.
+    void follow_points();
     [[nodiscard]] std::vector<std::string> point_field_names() const;
+    [[nodiscard]] bool has_point_field(std::string_view name) const;
     [[nodiscard]] std::vector<std::string> point_quantities() const;
     [[nodiscard]] FieldView view_points(std::string_view field) const;
     /// The number of the nearest point within a cell's size, -1 where there is none.

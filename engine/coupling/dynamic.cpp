@@ -15,7 +15,9 @@ namespace talus {
 namespace {
 
 constexpr int64_t substeps_a_look = 16;
-constexpr double most_nodes = 2e7;  // of the grid: 1.3 GB
+constexpr double rest_share = 1e-3;  // of the largest kinetic energy of the motion: below it for
+constexpr double rest_time = 1;      // s, the ground rests
+constexpr double most_nodes = 2e7;   // of the grid: 1.3 GB
 
 double sin_degrees(double angle) { return std::sin(angle * std::numbers::pi / 180); }
 double tan_degrees(double angle) { return std::tan(angle * std::numbers::pi / 180); }
@@ -152,18 +154,18 @@ ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
     return hydraulics;
 }
 
-/// Pressure at a place, from the mesh's nodes; outside the mesh, of the given cell's first node.
-double pressure_at(const Mesh& mesh, std::span<const double> pressure, const CellPlace& place, int32_t cell) {
+/// Value at a place, from the mesh's nodes; outside the mesh, of the given cell's first node.
+double value_at(const Mesh& mesh, std::span<const double> node_value, const CellPlace& place, int32_t cell) {
     const auto found = static_cast<size_t>(place.cell >= 0 ? place.cell : cell);
     const int32_t* nodes = &mesh.cell_nodes[static_cast<size_t>(mesh.cell_start[found])];
-    if (place.cell < 0) return pressure[static_cast<size_t>(nodes[0])];
+    if (place.cell < 0) return node_value[static_cast<size_t>(nodes[0])];
     double value = 0;
     with_shape(mesh.cell_start[found + 1] - mesh.cell_start[found], [&](auto shape) {
         using Shape = decltype(shape);
         typename Shape::Natural at{};
         std::copy_n(place.natural.begin(), Shape::dimension, at.begin());
         const auto share = Shape::values(at);
-        for (size_t a = 0; a < Shape::nodes; ++a) value += share[a] * pressure[static_cast<size_t>(nodes[a])];
+        for (size_t a = 0; a < Shape::nodes; ++a) value += share[a] * node_value[static_cast<size_t>(nodes[a])];
     });
     return value;
 }
@@ -177,7 +179,7 @@ void fill_with_water(const Scene& scene, const Mesh& mesh, std::span<const doubl
     const Locator locator(mesh);
     for (size_t p = 0; p < points.count; ++p) {
         const CellPlace place = locator.locate(points[position_x][p], points[position_y][p]);
-        const double here = pressure_at(mesh, pressure, place, cell[p]);
+        const double here = value_at(mesh, pressure, place, cell[p]);
         const auto soil = static_cast<size_t>(points.soil[p]);
         const double saturation =
             tables[soil].at(here).saturation * (1 + std::max(here, 0.0) / scene.water.bulk_modulus);
@@ -206,18 +208,62 @@ bool is_finite(const FreePoints& points, PointField name) {
                 "t = " + value_text(time) + " s: " + problem + "; this says nothing about the slope");
 }
 
+/// The mass of each soil, which the mesh's deformation did not change.
+void keep_mass(const std::vector<double>& soil_mass, FreePoints& points) {
+    std::vector<double> found(soil_mass.size(), 0.0);
+    for (size_t p = 0; p < points.count; ++p) found[static_cast<size_t>(points.soil[p])] += points[solid_mass][p];
+    for (size_t p = 0; p < points.count; ++p) {
+        const auto soil = static_cast<size_t>(points.soil[p]);
+        points[solid_mass][p] *= soil_mass[soil] / found[soil];
+    }
+}
+
+/// What the points' water is short of the mesh's, by their place between its nodes, goes to those that are neither full nor empty.
+void keep_water(const Scene& scene, double water, FreePoints& points) {
+    double missing = scene.water.density * water, room = 0;
+    std::vector<double> share(points.count);
+    for (size_t p = 0; p < points.count; ++p) {
+        missing -= points[water_mass][p];
+        const auto soil = static_cast<size_t>(points.soil[p]);
+        const Retention& retention = scene.soils[soil].hydraulics.retention;
+        const double pores = scene.water.density * scene.soils[soil].porosity * points[point_volume][p];
+        const double saturation = points[water_mass][p] / pores;
+        share[p] = pores * std::max(retention.maximum_saturation - saturation, 0.0) *
+                   std::max(saturation - retention.residual_saturation, 0.0);
+        room += share[p];
+    }
+    for (size_t p = 0; p < points.count && room > 0; ++p) points[water_mass][p] += missing * share[p] / room;
+}
+
+/// Where the points lay before the mesh's nodes moved.
+void subtract_displacement(const Mesh& mesh, std::span<const double> displacement, const FreePoints& points,
+                           std::vector<double>& position) {
+    const Locator locator(mesh);
+    std::vector<double> along(displacement.size() / 2);
+    for (const size_t axis : {size_t{0}, size_t{1}}) {
+        for (size_t i = 0; i < along.size(); ++i) along[i] = displacement[2 * i + axis];
+        for (size_t p = 0; p < points.count; ++p) {
+            const CellPlace place = locator.locate(points[position_x][p], points[position_y][p]);
+            if (place.cell < 0) continue;
+            position[2 * static_cast<size_t>(points.number[p]) + axis] -= value_at(mesh, along, place, place.cell);
+        }
+    }
+}
+
 }  // namespace
 
 DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points,
-                                                 std::span<const double> pressure, int32_t threads) {
+                                                 const Handover& handover, int32_t threads) {
     const Walls walls = find_walls(scene, mesh);
     const double cell_size = find_cell_size(scene, walls);
     SeededPoints seeded = make_free_points(scene, mesh, mesh_points, walls);
-    if (pressure.empty()) {
+    if (!handover.soil_mass.empty()) keep_mass(handover.soil_mass, seeded.points);
+    if (handover.pressure.empty()) {
         return Motion(std::in_place_type<ExplicitMotion>, cell_size, walls, scene.gravity, explicit_soils(scene),
                       std::move(seeded.points), threads);
     }
-    fill_with_water(scene, mesh, pressure, seeded.cell, seeded.points);
+    fill_with_water(scene, mesh, handover.pressure, seeded.cell, seeded.points);
+    if (handover.water > 0) keep_water(scene, handover.water, seeded.points);
     std::vector<ExplicitHydraulics> hydraulics;
     std::vector<SaturationTable> tables;
     for (const Soil& soil : scene.soils) {
@@ -231,11 +277,12 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
                   std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads);
 }
 
-DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points,
-                             std::span<const double> pressure, int32_t threads)
+DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Handover& handover,
+                             int32_t threads)
     : soils_(explicit_soils(scene)),
-      motion_(make_motion(scene, mesh, mesh_points, pressure, threads)),
-      water_density_(scene.water.density) {
+      motion_(make_motion(scene, mesh, mesh_points, handover, threads)),
+      water_density_(scene.water.density),
+      may_rest_(scene.physics.regime == MotionRegime::automatic) {
     start_energy_ = std::visit([](const auto& motion) { return sum(motion.energies()); }, motion_);
     for (const Soil& soil : scene.soils) grain_density_.push_back(soil.dry_density / (1 - soil.porosity));
     const FreePoints& points = this->points();
@@ -245,12 +292,15 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
         start_position_[2 * number] = points[position_x][p];
         start_position_[2 * number + 1] = points[position_y][p];
     }
+    if (!handover.displacement.empty()) subtract_displacement(mesh, handover.displacement, points, start_position_);
 }
 
 // The macro step of a dynamic ground: substeps of equal length, as long as the fastest wave and the fastest motion allow.
 bool DynamicGround::advance(double from, double until, const RainAt& rain, const Cancelled& cancelled) {
     substeps_ = 0;
     peak_velocity_ = 0;
+    rests_ = false;
+    watch_.moved_last = std::max(watch_.moved_last, from);
     std::visit([](auto& motion) { motion.restart(); }, motion_);  // what follows depends on the points alone
     if (auto* mixture = std::get_if<Mixture>(&motion_)) mixture->set_rain(rain);
     return std::visit([&](auto& motion) { return move(motion, from, until, cancelled); }, motion_);
@@ -273,7 +323,9 @@ bool DynamicGround::move(Moving& motion, double from, double until, const Cancel
         if (!looks) continue;
         look(motion, time);
         if (cancelled((time - from) / (until - from))) return false;
+        if (may_rest_ && rests_) break;
     }
+    time_ = time;
     return true;
 }
 
@@ -288,9 +340,14 @@ void DynamicGround::look(const Moving& motion, double time) {
     if (static_cast<double>(motion.grid().nodes()) > most_nodes)
         stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");
     peak_velocity_ = std::max(peak_velocity_, largest_speed(points));
+    const double kinetic = motion.energies().kinetic;
+    watch_.peak_energy = std::max(watch_.peak_energy, kinetic);
+    if (kinetic > rest_share * watch_.peak_energy) watch_.moved_last = time;
+    rests_ = time - watch_.moved_last >= rest_time;
 }
 
-void DynamicGround::restore(const FreePoints& points) {
+void DynamicGround::restore(const FreePoints& points, const RestWatch& watch) {
+    watch_ = watch;
     std::visit([&](auto& motion) { motion.points() = points; }, motion_);
 }
 
@@ -300,6 +357,18 @@ const FreePoints& DynamicGround::points() const {
 
 double DynamicGround::cell_size() const {
     return std::visit([](const auto& motion) { return motion.grid().cell_size; }, motion_);
+}
+
+double DynamicGround::rain_on(const RainAt& rain) const {
+    const Grid& grid = std::visit([](const auto& motion) -> const Grid& { return motion.grid(); }, motion_);
+    std::vector<uint8_t> held(static_cast<size_t>(grid.cells[0]), 0);
+    for (size_t p = 0; p < points().count; ++p) held[static_cast<size_t>(grid.cell_of(points()[position_x][p], 0))] = 1;
+    double sum = 0;
+    for (size_t column = 0; column < held.size(); ++column) {
+        if (held[column] == 0) continue;
+        sum += grid.cell_size * rain(grid.corner[0] + (static_cast<double>(column) + 0.5) * grid.cell_size);
+    }
+    return sum;
 }
 
 double DynamicGround::water() const {

@@ -1,6 +1,7 @@
 // The macro step of a dynamic ground: its material points carried through a host's step by their momentum.
 #pragma once
 
+#include "coupling/ground_state.hpp"
 #include "coupling/motion_report.hpp"
 #include "coupling/progress.hpp"
 #include "ground/mesh.hpp"
@@ -27,21 +28,35 @@ struct WaterExchange {
     double seepage = 0;
 };
 
+/// What a ground of a mesh hands over to its material points.
+struct Handover {
+    std::span<const double> pressure{};      ///< at the nodes, Pa; empty: dry
+    std::span<const double> displacement{};  ///< of the nodes since the start, m; empty: none
+    std::vector<double> soil_mass{};         ///< of each soil, kg per metre of thickness; empty: as its density says
+    double water = 0;                        ///< m3 per metre of thickness; 0: as the pressures say
+};
+
 class DynamicGround {
 public:
     using Mixture = ExplicitMixture<Filling::unsaturated>;
 
-    /// Cuts the points out of the mesh; they take their stress from the mesh's points, where these have one, and their water from the
-    /// pressure at the mesh's nodes (Pa; empty: dry). Throws Error(invalid_scene) where a wall is not a straight side along an axis.
-    DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, std::span<const double> pressure,
+    /// Cuts the points out of the mesh; they take their stress from the mesh's points, where these have one, and what is
+    /// handed over. Throws Error(invalid_scene) where a wall is not a straight side along an axis.
+    DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Handover& handover,
                   int32_t threads);
 
-    /// Carries the points from one time to another, s. False when `cancelled` said so. Throws Error(not_converged) where the motion
+    /// Carries the points from one time to another, s, or until they rest. False when `cancelled` said so. Throws Error(not_converged) where the motion
     /// comes to no number, the ground is pressed to less than its grains or it spreads beyond all bounds. In both cases the caller puts the points back.
     bool advance(double from, double until, const RainAt& rain, const Cancelled& cancelled);
 
     /// As they were, to the last bit.
-    void restore(const FreePoints& points);
+    void restore(const FreePoints& points, const RestWatch& watch);
+    [[nodiscard]] const RestWatch& rest_watch() const { return watch_; }
+
+    [[nodiscard]] double time() const { return time_; }  ///< that the last advance came to, s
+    /// Whether the last advance ended because the kinetic energy had been below a thousandth of its peak for a second.
+    [[nodiscard]] bool rests() const { return rests_; }
+    [[nodiscard]] double rain_on(const RainAt& rain) const;  ///< m3/s, on the columns of the grid that hold ground
 
     [[nodiscard]] const FreePoints& points() const;
     [[nodiscard]] double cell_size() const;
@@ -58,8 +73,8 @@ public:
 
 private:
     using Motion = std::variant<ExplicitMotion, Mixture>;
-    static Motion make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points,
-                              std::span<const double> pressure, int32_t threads);
+    static Motion make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Handover& handover,
+                              int32_t threads);
     template <class Moving>
     bool move(Moving& motion, double from, double until, const Cancelled& cancelled);
     template <class Moving>
@@ -71,6 +86,10 @@ private:
     double water_density_ = 0;           // kg/m3
     std::vector<double> grain_density_;  // per soil, kg/m3
     std::vector<double> start_position_;
+    bool may_rest_ = false;  // whether the motion ends where it rests
+    bool rests_ = false;
+    double time_ = 0;  // s
+    RestWatch watch_;
     double start_energy_ = 0;   // J
     int64_t substeps_ = 0;      // of the last advance
     double peak_velocity_ = 0;  // m/s, likewise

@@ -20,6 +20,12 @@ struct FlowWatch {
     double gain = 0;            ///< m3/s net inflow
 };
 
+/// How a motion comes to rest.
+struct RestWatch {
+    double peak_energy = 0;  ///< J, kinetic, since the motion began
+    double moved_last = 0;   ///< s, when the kinetic energy was last above the share of it that counts as rest
+};
+
 struct GroundState {
     double time = 0;                       ///< s
     std::vector<double> node_position;     ///< nodes x dimension, m
@@ -27,6 +33,7 @@ struct GroundState {
     std::vector<double> velocity;          ///< nodes x dimension, m/s, mean over the last step; empty: rigid
     Points points;                         ///< empty: dynamic
     FreePoints moving;                     ///< of a dynamic ground, in a state that was saved
+    RestWatch rest_watch;                  ///< likewise
     FlowState flow;                        ///< empty: dry
     std::vector<double> pore_volume;       ///< per portion, m3: what the ground has
     std::vector<double> flow_pore_volume;  ///< per portion, m3: what the flow last took for it
@@ -34,6 +41,7 @@ struct GroundState {
     std::vector<double> pore_stress_rate;  ///< per portion, Pa/s, likewise
     double exchange_step = 0;              ///< s, what the next exchange between flow and motion would take; 0: unknown
     bool equilibrium_lost = false;         ///< the skeleton stands as it was when it failed
+    bool rests = false;                    ///< it failed, moved and came to rest
     FlowWatch watch;
     bool rain_is_out = false;
 };

@@ -40,7 +40,12 @@ double suction_of(const HydraulicTable& table, const Soil& soil, size_t number, 
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, double tolerance, int32_t threads)
-    : forcing(scene), scene_(scene), tolerance_(tolerance), mesh_(build_mesh(scene)), reference_mesh_(mesh_) {
+    : forcing(scene),
+      scene_(scene),
+      tolerance_(tolerance),
+      threads_(threads),
+      mesh_(build_mesh(scene)),
+      reference_mesh_(mesh_) {
     state_.points = make_points(mesh_);
     state_.node_position = mesh_.position;
     initial_volume_ = state_.points.volume;
@@ -284,7 +289,7 @@ EquilibriumOutcome Simulation::find_initial_stress(const Loads& loads) {
         case InitialStress::gravity: return turn_on_gravity(*equilibrium_, loads);
         case InitialStress::k0: break;
     }
-    if (scene_.physics.regime == MotionRegime::quasi_static)
+    if (scene_.physics.regime != MotionRegime::dynamic)
         return set_k0_stress(*equilibrium_, mesh_, state_.points, loads, scene_.gravity, scene_.initial.k0);
     put_k0_stress(mesh_, state_.points, loads, scene_.gravity, scene_.initial.k0);
     return none;
@@ -292,7 +297,7 @@ EquilibriumOutcome Simulation::find_initial_stress(const Loads& loads) {
 
 // What moves are the points alone: the mesh and its equilibrium have served.
 void Simulation::make_dynamic(int32_t threads) {
-    dynamic_ = std::make_unique<DynamicGround>(scene_, mesh_, state_.points, state_.flow.pressure, threads);
+    dynamic_ = std::make_unique<DynamicGround>(scene_, mesh_, state_.points, Handover{state_.flow.pressure}, threads);
     equilibrium_.reset();
     integrator_.reset();
     flow_.reset();

@@ -49,6 +49,9 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
                 } else {
                     lose_equilibrium();
                     state_.exchange_step = whole;
+                    if (scene_.physics.regime != MotionRegime::automatic) break;
+                    start_motion();
+                    return advance_dynamically(until, cancelled);
                 }
                 break;
             case Exchange::flow_stopped:
@@ -63,10 +66,27 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
     return true;
 }
 
-// A dynamic ground: from one change of the rain to the next.
+// From the last state in equilibrium. That stays as it is, so that a step that fails later can go back to it.
+void Simulation::start_motion() {
+    Handover handover{state_.flow.pressure, state_.displacement, {}, 0};
+    handover.soil_mass.assign(scene_.soils.size(), 0.0);
+    for (size_t p = 0; p < initial_volume_.size(); ++p) {
+        const auto soil = static_cast<size_t>(state_.points.soil[p]);
+        handover.soil_mass[soil] += scene_.soils[soil].dry_density * initial_volume_[p];
+    }
+    if (flow_) handover.water = water_now();
+    dynamic_ = std::make_unique<DynamicGround>(scene_, mesh_, state_.points, handover, threads_);
+    happenings.push_back({HappeningKind::motion_started, state_.time, outcome_.collapse.place, 0.0});
+}
+
+// A dynamic ground: from one change of the rain to the next. In the regime `auto` it lies still once it rests.
 bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
     const double from = state_.time;
     while (state_.time < until) {
+        if (state_.rests) {
+            lie_still(until);
+            return true;
+        }
         const double stop = forcing.next_break(state_.time, until);
         const double start = state_.time;
         const auto watched = [&](double fraction) {
@@ -78,9 +98,27 @@ bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
         const WaterExchange water = dynamic_->water_exchange();
         state_.flow.totals[rain_total] += water.rain;
         state_.flow.totals[seepage_total] += water.seepage;
-        state_.time = stop;
+        state_.time = dynamic_->time();
+        if (scene_.physics.regime == MotionRegime::automatic && dynamic_->rests()) {
+            state_.rests = true;
+            const MotionReport report = dynamic_->report();
+            happenings.push_back(
+                {HappeningKind::came_to_rest, state_.time, {report.front_x, 0.0}, report.sliding_volume});
+        }
     }
     return true;
+}
+
+// No water moves in ground that rests: all rain runs off.
+void Simulation::lie_still(double until) {
+    while (state_.time < until) {
+        const double stop = forcing.next_break(state_.time, until);
+        const double now = state_.time;
+        const double fallen = (stop - now) * dynamic_->rain_on([this, now](double x) { return rain_at(x, now); });
+        state_.flow.totals[rain_total] += fallen;
+        state_.flow.totals[run_off_total] += fallen;
+        state_.time = stop;
+    }
 }
 
 double Simulation::rain_at(double x, double time) const {
@@ -111,17 +149,20 @@ void Simulation::note_rain_end() {
 
 GroundState Simulation::save() const {
     GroundState state = state_;
-    if (dynamic_) state.moving = dynamic_->points();
+    if (!dynamic_) return state;
+    state.moving = dynamic_->points();
+    state.rest_watch = dynamic_->rest_watch();
     return state;
 }
 
 void Simulation::restore(const GroundState& state) {
     state_ = state;
-    if (dynamic_) {
-        dynamic_->restore(state.moving);
+    if (state.moving.count > 0) {
+        dynamic_->restore(state.moving, state.rest_watch);
         state_.moving = {};
         return;
     }
+    dynamic_.reset();  // the motion began in the step that is undone
     mesh_.position = state.node_position;
     if (equilibrium_) equilibrium_->restore(state.displacement);
     refresh_geometry();

@@ -36,6 +36,8 @@ enum class HappeningKind {
     ponding_ended,
     seepage_started,
     loss_of_equilibrium,
+    motion_started,
+    came_to_rest,
     rain_ended
 };
 
@@ -83,7 +85,9 @@ public:
     [[nodiscard]] const DynamicGround* dynamic() const { return dynamic_.get(); }  ///< nullptr: quasi-static
 
 private:
+    void start_motion();
     bool advance_dynamically(double until, const Cancelled& cancelled);
+    void lie_still(double until);
     [[nodiscard]] double rain_at(double x, double time) const;  ///< m/s, 0 where no zone is
 
     enum class Exchange { agreed, cancelled, disagreed, flow_stopped, equilibrium_lost };
@@ -142,6 +146,7 @@ private:
 
     const Scene& scene_;
     double tolerance_;
+    int32_t threads_;
     Mesh mesh_;
     Mesh reference_mesh_;
     GroundState state_;

@@ -80,7 +80,7 @@ void check_motion(const Check& check, const Boundary& boundary, const Scene& sce
     check.at("frictionAngle")
         .used(rubs, given(boundary.friction_angle),
               boundary.has_motion ? name(boundary.motion) : "a boundary without motion");
-    if (scene.physics.regime == MotionRegime::dynamic) {
+    if (scene.physics.regime != MotionRegime::quasi_static) {
         check_wall(check, boundary, scene.ground);
     } else {
         check.at("motion").require(!rubs, "= friction: needs a dynamic regime");
@@ -233,7 +233,7 @@ void check_boundaries(const Check& scene_check, const Scene& scene) {
         check_motion(check, boundary, scene);
     }
     check_overlaps(scene_check, scene, outline);
-    const bool from_equilibrium = scene.physics.regime == MotionRegime::quasi_static ||
+    const bool from_equilibrium = scene.physics.regime != MotionRegime::dynamic ||
                                   scene.initial.stress == InitialStress::gravity ||
                                   scene.initial.stress == InitialStress::elastic;
     if (scene.physics.deforming && from_equilibrium) check_held(scene_check.at("boundaries"), scene);

@@ -159,7 +159,7 @@ void check_soil(const Check& check, const Soil& soil, const Physics& physics) {
     }
     if (physics.deforming) {
         check.at("dryDensity").needed(given(soil.dry_density), "a skeleton that deforms");
-        check_solid(check.at("solid"), soil.solid, physics.regime == MotionRegime::dynamic);
+        check_solid(check.at("solid"), soil.solid, physics.regime != MotionRegime::quasi_static);
     }
 }
 

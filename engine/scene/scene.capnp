@@ -88,6 +88,8 @@ enum Regime {
   # ground that deforms, between walls: each of `base`, `left` and `right` with a `motion` is a plane wall along an axis, which goes on
   # beyond the ground. Ground that leaves a side without a wall moves freely. Where there is
   # water it has a velocity of its own; the surface takes rain and lets water out, all other sides are closed as soon as the ground moves.
+  auto @2;
+  # Quasi-static until equilibrium is lost, dynamic from there until the ground rests; what is said of both holds.
 }
 
 enum StressMeasure {

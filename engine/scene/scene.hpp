@@ -153,7 +153,7 @@ struct Initial {
 enum class StressMeasure { net, bishop };
 
 /// dynamic: by momentum, on a Cartesian grid.
-enum class MotionRegime { quasi_static, dynamic };
+enum class MotionRegime { quasi_static, dynamic, automatic };
 
 /// What the scene's physics is; what it does not name is left out of the engine.
 struct Physics {

@@ -48,7 +48,7 @@ void check_moving_water(const Check& check, const Scene& scene) {
 /// What a dynamic ground cannot do yet.
 void check_regime(const Check& check, const Scene& scene) {
     const Check cell_size = check.at("dynamics").at("cellSize");
-    if (scene.physics.regime != MotionRegime::dynamic)
+    if (scene.physics.regime == MotionRegime::quasi_static)
         return cell_size.unused(given_positive(scene.dynamics.cell_size), "a ground whose regime is not dynamic");
     cell_size.needed(given_positive(scene.dynamics.cell_size), "a dynamic ground");
     const Check physics = check.at("physics");

@@ -9,7 +9,8 @@ namespace runner {
 namespace {
 
 const char* regime_name(int32_t regime) {
-    return regime == TALUS_DYNAMIC ? "dynamic" : regime == TALUS_QUASI_STATIC ? "quasi_static" : "equilibrium_lost";
+    constexpr const char* names[] = {"quasi_static", "equilibrium_lost", "dynamic", "at_rest"};
+    return names[regime];
 }
 
 }  // namespace
@@ -56,7 +57,8 @@ namespace {
 
 Json event_json(const talus_event& event) {
     static constexpr std::array kinds = {
-        "", "saturated", "ponding_started", "ponding_ended", "seepage_started", "loss_of_equilibrium", "rain_ended"};
+        "",           "saturated",      "ponding_started", "ponding_ended", "seepage_started", "loss_of_equilibrium",
+        "rain_ended", "motion_started", "came_to_rest"};
     const auto kind = static_cast<size_t>(event.kind);
     return {
         {"kind", kind < kinds.size() ? kinds[kind] : "unknown"},

@@ -176,7 +176,7 @@ int run(const RunSettings& settings) {
     const Json description = describe(engine);
     const std::filesystem::path out = settings.out;
     std::filesystem::create_directories(out);
-    Run run{std::move(engine), description, schedule_of(description, settings), FieldFiles(out, description), out};
+    Run run{std::move(engine), description, schedule_of(description, settings), FieldFiles(out), out};
 
     double wall = 0;
     {

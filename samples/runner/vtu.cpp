@@ -175,20 +175,20 @@ std::string file_name(const std::string& series, size_t index) {
 
 }  // namespace
 
-FieldFiles::FieldFiles(std::filesystem::path folder, const Json& description)
-    : folder_(std::move(folder)),
-      has_mesh_(description.at("nodes") != 0),
-      node_fields_(fields_at(description, "node", "node_position")),
-      cell_fields_(fields_at(description, "cell", "")),
-      point_fields_(fields_at(description, "point", "point_position")) {
+FieldFiles::FieldFiles(std::filesystem::path folder) : folder_(std::move(folder)) {
     std::filesystem::create_directories(folder_ / "fields");
 }
 
 void FieldFiles::write(const Engine& engine) {
     const double time = talus_engine_time(engine.get());
-    if (has_mesh_) add(ground_, time, vtu(engine, "node_position", mesh_cells(engine), node_fields_, cell_fields_));
+    const Json description = describe(engine);
+    if (description.at("nodes") != 0) {
+        add(ground_, time,
+            vtu(engine, "node_position", mesh_cells(engine), fields_at(description, "node", "node_position"),
+                fields_at(description, "cell", "")));
+    }
     const Cells points = vertices(rows_of(view(engine, "point_position")));
-    add(points_, time, vtu(engine, "point_position", points, point_fields_, {}));
+    add(points_, time, vtu(engine, "point_position", points, fields_at(description, "point", "point_position"), {}));
 }
 
 void FieldFiles::add(Series& series, double time, const std::string& vtu) {

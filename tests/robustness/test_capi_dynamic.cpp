@@ -59,6 +59,29 @@ const char* const wet_text = R"({
     "probes": [{"name": "A", "place": [5, 4]}]
 })";
 
+/// A steep bank that stands by its suction, until rain takes it.
+const char* const failing_text = R"({
+    "name": "failing",
+    "physics": {"regime": "auto"},
+    "water": {"bulkModulus": 1e7},
+    "soils": [{"name": "soil", "dryDensity": 1800, "porosity": 0.4,
+               "hydraulics": {"retention": {"model": "vanGenuchten", "alpha": 4e-04, "n": 2},
+                              "conductivity": {"along": 1e-04}},
+               "solid": {"youngModulus": 10e6, "poissonRatio": 0.3,
+                         "strength": {"cohesion": 500, "frictionAngle": 30},
+                         "softening": {"residualCohesion": 0, "residualFrictionAngle": 15, "slip": 0.05}}}],
+    "ground": {"section": {"terrain": [[0, 4], [3, 4], [6, 1], [12, 1]], "base": [[0, 0], [12, 0]],
+                           "layers": [{"soil": "soil"}], "columnWidth": 0.5, "surfaceCellHeight": 0.4, "growth": 1,
+                           "largestCellHeight": 0.5}},
+    "boundaries": [{"side": "base", "motion": "fixed"}, {"side": "left", "motion": "roller"},
+                   {"side": "right", "motion": "roller"}],
+    "surface": {"zones": [{"name": "rain", "time": [0], "rate": [3e-5]}]},
+    "initial": {"flow": "suction", "suction": 2e4},
+    "dynamics": {"cellSize": 0.5},
+    "numerics": {"tolerance": 0.1},
+    "probes": [{"name": "A", "place": [3.5, 3]}]
+})";
+
 std::vector<double> read(const host::Engine& engine, const char* field) {
     const talus_field shape = host::view(engine, field);
     std::vector<double> values(static_cast<size_t>(shape.shape[0] * (shape.rank == 2 ? shape.shape[1] : 1)));
@@ -327,4 +350,61 @@ TEST_CASE("C API: wet ground in motion takes the rain, loses no water, and an un
         if (place[2 * p + 1] < 2) CHECK(std::abs(pressure[p] - hydrostatic) < 0.5 * 9810 * 0.5);
     }
     CHECK(read(engine, "darcy_flux").size() == place.size());
+}
+
+TEST_CASE("C API: from the storm through failure and motion to rest, with every drop of water") {
+    Impatient impatient;
+    talus_options options = TALUS_OPTIONS_INIT;
+    options.progress = Impatient::progress;
+    options.progress_user = &impatient;
+    Impatient counter;
+    talus_options counting = options;
+    counting.progress_user = &counter;
+    const host::Engine engine = host::engine(failing_text, &options), twin = host::engine(failing_text, &counting);
+    talus_step_report report = TALUS_STEP_REPORT_INIT, plain = TALUS_STEP_REPORT_INIT;
+    double before = 0;
+    while (plain.regime == TALUS_QUASI_STATIC && plain.time < 12000) {
+        before = plain.time;
+        counter.calls = 0;
+        REQUIRE(talus_engine_step(twin.get(), 600, &plain) == TALUS_OK);
+    }
+    REQUIRE(plain.regime == TALUS_AT_REST);
+    CHECK(plain.peak_velocity > 0.1);
+    CHECK(plain.sliding_volume > 1);
+    CHECK(plain.run_out > 0);
+    CHECK(std::abs(plain.water_residual) < 1e-8 * plain.water_rain);
+    CHECK(plain.water_rain == doctest::Approx(3e-5 * 12 * plain.time).epsilon(1e-6));
+
+    int64_t events = 0;
+    REQUIRE(talus_engine_event_count(twin.get(), &events) == TALUS_OK);
+    REQUIRE(events == 3);
+    for (int64_t i = 0; i < 3; ++i) {
+        talus_event event = TALUS_EVENT_INIT;
+        REQUIRE(talus_engine_event(twin.get(), i, &event) == TALUS_OK);
+        const int32_t kinds[] = {TALUS_LOSS_OF_EQUILIBRIUM, TALUS_MOTION_STARTED, TALUS_CAME_TO_REST};
+        CHECK(event.kind == kinds[i]);
+        CHECK(event.time > before);
+    }
+
+    // The step of the failure, cancelled while the ground moves, leaves no trace; in smaller pieces it comes to the same.
+    REQUIRE(talus_engine_advance_to(engine.get(), before - 600, &report) == TALUS_OK);
+    while (report.time < before) REQUIRE(talus_engine_step(engine.get(), 600, &report) == TALUS_OK);
+    const std::vector<double> standing = read(engine, "net_stress"), pressure = read(engine, "pressure");
+    impatient.calls = 0;
+    impatient.limit = counter.calls - 20;
+    CHECK(talus_engine_step(engine.get(), 600, &report) == TALUS_CANCELLED);
+    CHECK(read(engine, "net_stress") == standing);
+    CHECK(read(engine, "pressure") == pressure);
+    impatient.limit = -1;
+    REQUIRE(talus_engine_step(engine.get(), 600, &report) == TALUS_OK);
+    CHECK(report.regime == TALUS_AT_REST);
+    CHECK(report.sliding_volume == doctest::Approx(plain.sliding_volume).epsilon(0.2));
+
+    // What rests lies still, and rain runs off.
+    const std::vector<double> place = read(twin, "point_position");
+    const double rain = plain.water_rain, run_off = plain.water_run_off;
+    REQUIRE(talus_engine_step(twin.get(), 3600, &plain) == TALUS_OK);
+    CHECK(read(twin, "point_position") == place);
+    CHECK(plain.water_rain - rain == doctest::Approx(3e-5 * 12 * 3600).epsilon(1e-6));
+    CHECK(plain.water_run_off - run_off == doctest::Approx(plain.water_rain - rain));
 }
