@@ -14,10 +14,10 @@ SCENE = "slope_gentle"
 HOURS = 6
 
 INTRODUCTION = f"""\
-<!-- Written by tests/bench. Do not edit. -->
+<!-- Written by tests/bench left_out. Do not edit. -->
 # What a scene saves by what it leaves out
 
-`tests/bench` writes this page and `build/reports/bench.json`. The scene is `{SCENE}` as it is in `samples/scenes`, {HOURS} hours
+`tests/bench left_out` writes this page and `build/reports/bench.json`. The scene is `{SCENE}` as it is in `samples/scenes`, {HOURS} hours
 of it by steps of an hour, one thread, a process a variant. *State* is `bytes` of `talus_engine_describe`: the fields at nodes
 and points. *Process* is what the process grew by, matrices and their factors included. In brackets: the ratio to the full scene.
 """

@@ -24,7 +24,9 @@ public:
     /// Of a saturation (-). At the maximum one and above: no suction; at the residual one and below: the dry end of the table.
     [[nodiscard]] State at(double saturation) const;
 
-    [[nodiscard]] double effective(double saturation) const { return (saturation - residual_) / (maximum_ - residual_); }
+    [[nodiscard]] double effective(double saturation) const {
+        return (saturation - residual_) / (maximum_ - residual_);
+    }
     [[nodiscard]] double maximum() const { return maximum_; }
 
 private:
