@@ -61,7 +61,7 @@ def triangles(fields):
 
 
 def draw_contours(run, figure):
-    fields = run.fields(run.times[-1])
+    fields = run.fields(run.mesh_times[-1])
     position = fields.nodes["position"]
     mesh = Triangulation(position[:, 0], position[:, 1], triangles(fields))
     wanted = []
@@ -89,13 +89,14 @@ def draw_contours(run, figure):
 # --- a dynamic ground: frames of its points ---
 
 def draw_frames(run, figure):
-    rows = figure.subplots(len(run.times), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    rows = figure.subplots(len(run.moving_times), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     scale = figure.dpi * figure.get_figwidth()
-    for axes, time in zip(rows, run.times):
+    for axes, time in zip(rows, run.moving_times):
         points = run.fields(time).points
         distance = numpy.linalg.norm(points["displacement"], axis=1)
         width = numpy.ptp(run.fields(run.times[-1]).points["position"][:, 0])
-        size = max((0.5 * run.report["engine"]["cell_size"] / width * scale * 0.7) ** 2, 0.2)
+        spacing = numpy.sqrt(points["point_volume"].mean())
+        size = max((spacing / width * scale * 0.7) ** 2, 0.2)
         drawn = axes.scatter(points["position"][:, 0], points["position"][:, 1], c=distance, s=size, cmap="viridis", marker="s",
                              linewidths=0)
         figure.colorbar(drawn, ax=axes, label="displaced, m")
@@ -169,10 +170,10 @@ def main():
     has_water = run.report["engine"]["physics"]["water"]
     if run.times and run.report["engine"]["dimension"] == 1 and has_water:
         draw(run, "profiles", draw_profiles, (7, 4.5))
-    if run.report["engine"]["physics"]["regime"] == "dynamic":
-        draw(run, "frames", draw_frames, (7, 2 * len(run.times)))
+    if run.moving_times:
+        draw(run, "frames", draw_frames, (7, 2 * len(run.moving_times)))
         draw(run, "energy", draw_energy, (7, 5))
-    elif run.times and run.report["engine"]["dimension"] == 2:
+    if run.mesh_times and run.report["engine"]["dimension"] == 2:
         draw(run, "contours", draw_contours, (7, 9))
     if run.probes:
         draw(run, "histories", draw_histories, (7, 7))

@@ -83,6 +83,19 @@ class Command(Folder):
 # Sand that falls for a fifth of a second.
 HEAP = json.loads((SCENES / "column_collapse.json").read_text())
 HEAP["dynamics"]["cellSize"] = 0.01
+
+# A bank that stands by its suction until rain takes it, after 111 minutes.
+SOIL = {"name": "soil", "dryDensity": 1800, "porosity": 0.4,
+        "hydraulics": {"retention": {"model": "vanGenuchten", "alpha": 4e-4, "n": 2}, "conductivity": {"along": 1e-4}},
+        "solid": {"youngModulus": 10e6, "poissonRatio": 0.3, "strength": {"cohesion": 500, "frictionAngle": 30},
+                  "softening": {"residualCohesion": 0, "residualFrictionAngle": 15, "slip": 0.05}}}
+BANK = {"name": "bank", "physics": {"regime": "auto"}, "water": {"bulkModulus": 1e7}, "soils": [SOIL],
+        "ground": {"section": {"terrain": [[0, 4], [3, 4], [6, 1], [12, 1]], "base": [[0, 0], [12, 0]], "layers": [{"soil": "soil"}],
+                               "columnWidth": 0.5, "surfaceCellHeight": 0.4, "growth": 1, "largestCellHeight": 0.5}},
+        "boundaries": [{"side": "base", "motion": "fixed"}, {"side": "left", "motion": "roller"}, {"side": "right", "motion": "roller"}],
+        "surface": {"zones": [{"name": "rain", "time": [0], "rate": [3e-5]}]}, "initial": {"flow": "suction", "suction": 2e4},
+        "dynamics": {"cellSize": 0.5}, "numerics": {"tolerance": 0.1}, "probes": [{"name": "A", "place": [3.5, 3]}],
+        "schedule": {"duration": 7800, "step": 600, "outputs": [0, 6000, 7200]}}
 HEAP["schedule"] = {"duration": 0.2, "step": 0.05, "outputs": [0, 0.1, 0.2]}
 
 
@@ -138,6 +151,23 @@ class Run(Folder):
             points = results.fields(0.2).points
             self.assertTrue(numpy.array_equal(points["position"][:, :2], engine.read("point_position")))
             self.assertTrue(numpy.array_equal(points["point_soil"], engine.read("point_soil")))
+
+    def test_from_storm_to_rest(self):
+        out = self.folder / "out"
+        done = run("run", self.scene(BANK), "--out", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        results = talus.Results(out)
+        self.assertEqual((results.mesh_times, results.moving_times), ([0, 6000], [7200]))
+        self.assertEqual(results.report["last"]["regime"], "at_rest")
+        kinds = [event["kind"] for event in results.report["events"]]
+        self.assertEqual(kinds, ["loss_of_equilibrium", "motion_started", "came_to_rest"])
+        points = results.fields(7200).points
+        self.assertGreater(numpy.linalg.norm(points["displacement"], axis=1).max(), 1)
+        self.assertTrue(numpy.isfinite(results.probes["A.pressure"]).all())
+        self.assertTrue(numpy.isnan(results.probes["A.strain.xx"][-1]))
+        drawn = subprocess.run([sys.executable, ROOT / "samples/plots.py", out], capture_output=True, text=True)
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.assertTrue((out / "frames.png").exists() and (out / "contours.png").exists())
 
     def test_interrupt_cancels_and_leaves_what_was_done(self):
         scene = json.loads((SCENES / "column.json").read_text())

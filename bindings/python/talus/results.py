@@ -60,6 +60,7 @@ class Results:
     report   what report.json says: a dict
     probes   the columns of probes.csv by their names, "time" and "A.pressure": arrays
     times    of the fields, s
+    mesh_times, moving_times   those at which the ground was one of a mesh, and one of points alone, s
     """
 
     def __init__(self, folder):
@@ -68,6 +69,8 @@ class Results:
         self.probes = self._read_probes()
         self._ground, self._points = self._series("ground"), self._series("points")
         self.times = list(self._points)
+        self.mesh_times = [time for time in self.times if time in self._ground]
+        self.moving_times = [time for time in self.times if time not in self._ground]
 
     def _read_probes(self):
         path = self.folder / "probes.csv"
