@@ -78,7 +78,7 @@ def column_rows():
     """The paper's column by the explicit method: within the paper's distance between two methods."""
     reference = read_csv("column.csv")
     with Clock() as clock:
-        profiles = histories("column_explicit", 50)
+        profiles = histories("column_explicit", 25)
     for profile in profiles:
         at = reference["time_s"] == profile["time"]
         height = numpy.array(profile["height"])
