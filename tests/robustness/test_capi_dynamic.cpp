@@ -311,6 +311,8 @@ TEST_CASE("C API: sand that dilates becomes lighter and is still followed") {
     const size_t at = text.find(angle);
     REQUIRE(at != std::string::npos);
     text.replace(at, angle.size(), R"("frictionAngle": 31}, "dilationAngle": 31})");
+    const std::string size = R"("cellSize": 0.01)";
+    text.replace(text.find(size), size.size(), R"("cellSize": 0.02)");
     const host::Engine engine = host::engine(text.c_str());
     talus_step_report report = TALUS_STEP_REPORT_INIT;
     REQUIRE_MESSAGE(talus_engine_step(engine.get(), 1, &report) == TALUS_OK, talus_engine_error(engine.get()));
