@@ -40,8 +40,7 @@ double growth(double first_disagreement) {
 
 Simulation::Exchange Simulation::exchange(double duration, bool is_short, const Cancelled& cancelled) {
     const bool moves = skeleton_moves();
-    // What a short exchange leaves is corrected by the next before it adds up; and no forecast that errs may keep exchanges short.
-    const double let_stand = is_short ? 10.0 : 1.0;
+    // No forecast that errs may keep exchanges short.
     const double least_growth = is_short ? 2.0 : 0.0;
     FlowState flow = state_.flow;
     FlowWatch watch = state_.watch;
@@ -85,7 +84,7 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
         if (!flow_) break;
         compare_pore_volumes(flow);
         if (iteration == 0) first_disagreement = disagreement_;
-        if (disagreement_ <= (iteration < first_joint_iteration ? 1.0 : let_stand)) break;
+        if (disagreement_ <= 1.0) break;
         if (is_plain || !correct_jointly(flow, duration)) correct_expectation();
         expect_skeleton_at(duration, end_volume_, end_stress_);
     }
