@@ -123,13 +123,13 @@ std::array<double, 4> stress_at(const Mesh& mesh, const Points& points, const Ce
     return stress;
 }
 
-SeededPoints make_free_points(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Walls& walls) {
+SeededPoints make_free_points(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Locator& locator,
+                              const Walls& walls, double cell_size) {
     std::vector<double> density;
     for (const Soil& soil : scene.soils) density.push_back(soil.dry_density);
     const double corner = walls.left.kind != WallKind::none ? walls.left.place : walls.right.place;
-    SeededPoints seeded = seed_points(mesh, find_cell_size(scene, walls), {corner, walls.base.place}, density);
+    SeededPoints seeded = seed_points(mesh, cell_size, {corner, walls.base.place}, density);
     if (scene.initial.stress == InitialStress::zero) return seeded;
-    const Locator locator(mesh);
     for (size_t p = 0; p < seeded.points.count; ++p) {
         const CellPlace place = locator.locate(seeded.points[position_x][p], seeded.points[position_y][p]);
         const std::array<double, 4> stress = stress_at(mesh, mesh_points, place, seeded.cell[p]);
@@ -171,12 +171,11 @@ double value_at(const Mesh& mesh, std::span<const double> node_value, const Cell
 }
 
 /// The water that each point holds at the pressure of the place it lies in.
-void fill_with_water(const Scene& scene, const Mesh& mesh, std::span<const double> pressure,
+void fill_with_water(const Scene& scene, const Mesh& mesh, const Locator& locator, std::span<const double> pressure,
                      const std::vector<int32_t>& cell, FreePoints& points) {
     std::vector<HydraulicTable> tables;
     for (const Soil& soil : scene.soils) tables.emplace_back(soil.hydraulics);
     for (size_t f = dry_fields; f < point_fields; ++f) points.field[f].assign(points.count, 0.0);
-    const Locator locator(mesh);
     for (size_t p = 0; p < points.count; ++p) {
         const CellPlace place = locator.locate(points[position_x][p], points[position_y][p]);
         const double here = value_at(mesh, pressure, place, cell[p]);
@@ -256,13 +255,14 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
                                                  const Handover& handover, int32_t threads) {
     const Walls walls = find_walls(scene, mesh);
     const double cell_size = find_cell_size(scene, walls);
-    SeededPoints seeded = make_free_points(scene, mesh, mesh_points, walls);
+    const Locator locator(mesh);
+    SeededPoints seeded = make_free_points(scene, mesh, mesh_points, locator, walls, cell_size);
     if (!handover.soil_mass.empty()) keep_mass(handover.soil_mass, seeded.points);
     if (handover.pressure.empty()) {
         return Motion(std::in_place_type<ExplicitMotion>, cell_size, walls, scene.gravity, explicit_soils(scene),
                       std::move(seeded.points), threads);
     }
-    fill_with_water(scene, mesh, handover.pressure, seeded.cell, seeded.points);
+    fill_with_water(scene, mesh, locator, handover.pressure, seeded.cell, seeded.points);
     if (handover.water > 0) keep_water(scene, handover.water, seeded.points);
     std::vector<ExplicitHydraulics> hydraulics;
     std::vector<SaturationTable> tables;
@@ -323,7 +323,7 @@ bool DynamicGround::move(Moving& motion, double from, double until, const Cancel
         if (!looks) continue;
         look(motion, time);
         if (cancelled((time - from) / (until - from))) return false;
-        if (may_rest_ && rests_) break;
+        if (rests_) break;
     }
     time_ = time;
     return true;
@@ -340,6 +340,7 @@ void DynamicGround::look(const Moving& motion, double time) {
     if (static_cast<double>(motion.grid().nodes()) > most_nodes)
         stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");
     peak_velocity_ = std::max(peak_velocity_, largest_speed(points));
+    if (!may_rest_) return;
     const double kinetic = motion.energies().kinetic;
     watch_.peak_energy = std::max(watch_.peak_energy, kinetic);
     if (kinetic > rest_share * watch_.peak_energy) watch_.moved_last = time;

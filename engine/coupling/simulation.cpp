@@ -99,7 +99,7 @@ bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
         state_.flow.totals[rain_total] += water.rain;
         state_.flow.totals[seepage_total] += water.seepage;
         state_.time = dynamic_->time();
-        if (scene_.physics.regime == MotionRegime::automatic && dynamic_->rests()) {
+        if (dynamic_->rests()) {
             state_.rests = true;
             const MotionReport report = dynamic_->report();
             happenings.push_back(

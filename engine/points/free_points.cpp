@@ -1,5 +1,6 @@
 #include "points/free_points.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace talus {
@@ -21,6 +22,10 @@ void FreePoints::assign(size_t points, size_t fields) {
     soil.assign(points, 0);
     number.resize(points);
     std::iota(number.begin(), number.end(), 0);
+}
+
+double FreePoints::least(PointField name) const {
+    return count > 0 ? *std::min_element(field[name].begin(), field[name].end()) : 0;
 }
 
 size_t FreePoints::bytes_a_point() const {

@@ -50,6 +50,9 @@ struct FreePoints {
     double* operator[](PointField name) { return field[name].data(); }
     const double* operator[](PointField name) const { return field[name].data(); }
 
+    /// The least value of a field; 0 where there is no point.
+    [[nodiscard]] double least(PointField name) const;
+
     /// Bytes that one point holds.
     [[nodiscard]] size_t bytes_a_point() const;
 

@@ -104,16 +104,13 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
     nodes_.walls = walls;
     nodes_.gravity = gravity;
     nodes_.liquid_density = water.density;
-    nodes_.least_mass =
-        points_.count > 0 ? *std::min_element(points_[solid_mass], points_[solid_mass] + points_.count) : 0;
+    nodes_.least_mass = points_.least(solid_mass);
     restart();
 }
 
 template <Filling filling>
 void ExplicitMixture<filling>::restart() {
-    const Walls& walls = nodes_.walls;
-    nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
-    nodes_.grid.cells = {};
+    nodes_.start_grid();
     restarted_ = true;
     nodes_.rained = nodes_.seepage = 0;
     arrange_points();
@@ -163,8 +160,7 @@ void ExplicitMixture<filling>::find_water(size_t first, size_t count, WaterBlock
     for (size_t k = 0; k < count; ++k) {
         const size_t p = first + k;
         const auto soil = static_cast<size_t>(points_.soil[p]);
-        const double pores = points_[point_volume][p] - points_[solid_mass][p] / hydraulics_[soil].grain_density;
-        const double filled = points_[water_mass][p] / (water_.density * pores);
+        const double filled = share_filled(p);
         if constexpr (filling == Filling::saturated) {
             water.pressure[k] = water_.bulk_modulus * (filled - 1);
             water.mobility[k] = hydraulics_[soil].mobility;
@@ -374,9 +370,7 @@ double ExplicitMixture<filling>::pore_stress(size_t point) const {
 
 template <Filling filling>
 double ExplicitMixture<filling>::saturation(size_t point) const {
-    const auto soil = static_cast<size_t>(points_.soil[point]);
-    const double pores = points_[point_volume][point] - points_[solid_mass][point] / hydraulics_[soil].grain_density;
-    return std::min(points_[water_mass][point] / (water_.density * pores), 1.0);
+    return std::min(share_filled(point), 1.0);
 }
 
 template class ExplicitMixture<Filling::saturated>;

@@ -76,6 +76,12 @@ private:
     };
 
     void arrange_points();
+    /// Of the pores, by the point's water; above 1 it is pressed together.
+    [[nodiscard]] double share_filled(size_t p) const {
+        const double grain_density = hydraulics_[static_cast<size_t>(points_.soil[p])].grain_density;
+        const double pores = points_[point_volume][p] - points_[solid_mass][p] / grain_density;
+        return points_[water_mass][p] / (water_.density * pores);
+    }
     [[nodiscard]] double pore_stress(const WaterBlock& water, size_t k) const;
     void find_wave_speed();
     void fall_rain();

@@ -2,12 +2,11 @@
 
 #include "motion/explicit/transfer.hpp"
 
-#include <tbb/parallel_for.h>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace talus {
+
 ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
                                FreePoints points, int32_t threads)
     : soils_(std::move(soils)), points_(std::move(points)), arrangement_(threads) {
@@ -15,15 +14,12 @@ ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double grav
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
     nodes_.gravity = gravity;
-    nodes_.least_mass =
-        points_.count > 0 ? *std::min_element(points_[solid_mass], points_[solid_mass] + points_.count) : 0;
+    nodes_.least_mass = points_.least(solid_mass);
     restart();
 }
 
 void ExplicitMotion::restart() {
-    const Walls& walls = nodes_.walls;
-    nodes_.grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
-    nodes_.grid.cells = {};
+    nodes_.start_grid();
     arrange_points();
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();

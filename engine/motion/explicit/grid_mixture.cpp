@@ -8,19 +8,6 @@ namespace {
 
 constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is at the ground's edge
 
-template <class Value>
-void add(Value& to, const Mirror& mirror, const Value& value) {
-    to.x += mirror.x * value.x;
-    to.y += mirror.y * value.y;
-}
-
-void move_in(NodeMomentum& inside, NodeMomentum& beyond, const Mirror& mirror) {
-    add(inside, mirror, beyond);
-    inside.mass += beyond.mass;
-    inside.more += beyond.more;
-    beyond = {};
-}
-
 }  // namespace
 
 void GridMixture::resize() {
@@ -46,12 +33,12 @@ void GridMixture::begin_step() {
         edge_height[i] = {};
     });
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
-        move_in(momentum[nodes.inside], momentum[nodes.beyond], mirror);
-        add(force[nodes.inside], mirror, force[nodes.beyond]);
+        move_inside(momentum[nodes.inside], momentum[nodes.beyond], mirror);
+        add_mirrored(force[nodes.inside], mirror, force[nodes.beyond]);
         force[nodes.beyond] = {};
     });
     for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
-        move_in(liquid_momentum[nodes.inside], liquid_momentum[nodes.beyond], mirror);
+        move_inside(liquid_momentum[nodes.inside], liquid_momentum[nodes.beyond], mirror);
     });
     for_each_node([this](size_t i) {
         const NodeMomentum &solid = momentum[i], &liquid = liquid_momentum[i];
@@ -79,8 +66,9 @@ void GridMixture::end_step(double dt) {
 
 void GridMixture::fold_forces() {
     for_each_node([this](size_t i) { edge_height[i].y += means[i].volume; });
-    for_each_mirror(
-        [this](NodePair nodes, const Mirror& mirror) { add(force[nodes.inside], mirror, force[nodes.beyond]); });
+    for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
+        add_mirrored(force[nodes.inside], mirror, force[nodes.beyond]);
+    });
     for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
         NodeGradients &in = gradients[nodes.inside], &out = gradients[nodes.beyond];
         in.push_x += mirror.x * out.push_x;
@@ -94,7 +82,7 @@ void GridMixture::fold_forces() {
         mean_in.mobility += mean_out.mobility;
         mean_in.volume += mean_out.volume;
         mean_out = {};
-        add(edge_height[nodes.inside], mirror, edge_height[nodes.beyond]);
+        add_mirrored(edge_height[nodes.inside], mirror, edge_height[nodes.beyond]);
         edge_height[nodes.beyond] = {};
     });
 }

@@ -5,15 +5,6 @@
 #include <limits>
 
 namespace talus {
-namespace {
-
-void add(NodeVector& to, const Mirror& sign, const NodeVector& value) {
-    to.x += sign.x * value.x;
-    to.y += sign.y * value.y;
-}
-
-}  // namespace
-
 /// Beyond a wall the nodes move as the mirrored ground would, so that what is interpolated on the wall is zero across it, and along it
 /// where it is fixed.
 void GridMotion::mirror() {
@@ -25,12 +16,8 @@ void GridMotion::mirror() {
 void GridMotion::begin_step() {
     for_each_node([this](size_t i) { force[i] = {0, -gravity * momentum[i].mass}; });
     for_each_mirror([this](NodePair nodes, const Mirror& sign) {
-        NodeMomentum &in = momentum[nodes.inside], &out = momentum[nodes.beyond];
-        in.x += sign.x * out.x;
-        in.y += sign.y * out.y;
-        in.mass += out.mass;
-        out = {};
-        add(force[nodes.inside], sign, force[nodes.beyond]);
+        move_inside(momentum[nodes.inside], momentum[nodes.beyond], sign);
+        add_mirrored(force[nodes.inside], sign, force[nodes.beyond]);
         force[nodes.beyond] = {};
     });
     for_each_node([this](size_t i) {
@@ -43,7 +30,7 @@ void GridMotion::begin_step() {
 
 void GridMotion::end_step(double dt) {
     for_each_mirror(
-        [this](NodePair nodes, const Mirror& sign) { add(force[nodes.inside], sign, force[nodes.beyond]); });
+        [this](NodePair nodes, const Mirror& sign) { add_mirrored(force[nodes.inside], sign, force[nodes.beyond]); });
     for_each_node([this, dt](size_t i) {
         const double response = momentum[i].mass > 0 ? dt / momentum[i].mass : 0;
         velocity[i].x += response * force[i].x;

@@ -19,6 +19,21 @@ struct NodeVector {
     double x = 0, y = 0;
 };
 
+/// What a wall mirrors adds to a vector inside.
+template <class Vector>
+void add_mirrored(Vector& inside, const Mirror& mirror, const Vector& beyond) {
+    inside.x += mirror.x * beyond.x;
+    inside.y += mirror.y * beyond.y;
+}
+
+/// Momentum and mass beyond a wall come inside.
+inline void move_inside(NodeMomentum& inside, NodeMomentum& beyond, const Mirror& mirror) {
+    add_mirrored(inside, mirror, beyond);
+    inside.mass += beyond.mass;
+    inside.more += beyond.more;
+    beyond = {};
+}
+
 /// A bound of the speed that the nodes give a point, m/s; no number where a velocity is none. Nodes that only the rim of a spline reaches
 /// have next to no mass and run away, but points see as little of them. `least_mass`: kg, of a point.
 double speed_bound(const WalledGrid& grid, const std::vector<NodeMomentum>& momentum,

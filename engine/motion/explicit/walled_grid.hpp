@@ -45,6 +45,12 @@ struct WalledGrid {
     Walls walls;
     std::vector<Span> spans;  ///< one a row: outside them all is zero
 
+    /// No cells, their edges where the walls are.
+    void start_grid() {
+        grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
+        grid.cells = {};
+    }
+
     template <class Use>
     void for_each_node(const Use& use) const;
 
