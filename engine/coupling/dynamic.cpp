@@ -387,7 +387,8 @@ double DynamicGround::porosity(size_t point) const {
 
 WaterExchange DynamicGround::water_exchange() const {
     if (mixture() == nullptr) return {};
-    return {mixture()->rained() / water_density_, mixture()->seepage() / water_density_};
+    const auto volume = [this](double mass) { return mass / water_density_; };
+    return {volume(mixture()->rained()), volume(mixture()->run_off()), volume(mixture()->seepage())};
 }
 
 /// Grains keep their volume: no ground is denser than they are.

@@ -25,6 +25,7 @@ using RainAt = std::function<double(double x)>;
 /// Water that went in and out of the ground in the last advance, m3 per metre of thickness.
 struct WaterExchange {
     double rain = 0;
+    double run_off = 0;
     double seepage = 0;
 };
 

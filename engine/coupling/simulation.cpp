@@ -97,6 +97,7 @@ bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
             return false;
         const WaterExchange water = dynamic_->water_exchange();
         state_.flow.totals[rain_total] += water.rain;
+        state_.flow.totals[run_off_total] += water.run_off;
         state_.flow.totals[seepage_total] += water.seepage;
         state_.time = dynamic_->time();
         if (dynamic_->rests()) {

@@ -2,6 +2,7 @@
 #include "doctest/doctest.h"
 #include "materials/hydraulic/saturation_table.hpp"
 #include "motion/explicit/explicit_mixture.hpp"
+#include "motion/explicit/ground_edge.hpp"
 #include "verification/explicit_cases.hpp"
 
 #include <cmath>
@@ -69,9 +70,58 @@ TEST_CASE("rain on an unsaturated column enters it, and no water is lost") {
     for (int64_t i = 1; i <= steps; ++i) column.step(dt, i == steps);
     const double fallen = 1000 * 1e-4 * cell_size * dt * static_cast<double>(steps);
     CHECK(column.rained() == doctest::Approx(fallen).epsilon(1e-12));
+    CHECK(column.run_off() == 0.0);
     CHECK(column.seepage() == 0.0);
     CHECK(water_of(column.points()) - before == doctest::Approx(column.rained()).epsilon(1e-9));
     for (size_t p = 0; p < column.points().count; ++p) CHECK(column.saturation(p) <= 1.0);
+}
+
+TEST_CASE("a full column sheds the rain that it cannot hold, and its water stays at rest") {
+    constexpr double cell_size = 0.05;
+    FreePoints points = wet_column(cell_size, 20, 1);
+    const double bulk_modulus = 1e7;
+    for (size_t p = 0; p < points.count; ++p)
+        points[water_mass][p] *= 1 + 1000 * gravity * (1 - points[position_y][p]) / bulk_modulus;
+    ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e9, 0.3)}},
+                                                 {{grain_density, 1e-4 / (1000 * gravity)}}, {SaturationTable(loam())},
+                                                 {1000, bulk_modulus}, std::move(points), 1);
+    column.set_rain([](double) { return 1e-4; });
+    const double before = water_of(column.points()), dt = column.critical_step();
+    const auto steps = static_cast<int64_t>(std::ceil(2 / dt));
+    for (int64_t i = 1; i <= steps; ++i) column.step(dt, i == steps);
+    CHECK(column.run_off() == doctest::Approx(column.rained()).epsilon(0.2));
+    const double gained = column.rained() - column.run_off() - column.seepage();
+    CHECK(water_of(column.points()) == doctest::Approx(before + gained).epsilon(1e-12));
+    for (size_t p = 0; p < column.points().count; ++p) {
+        const double depth = 1 - column.points()[position_y][p];
+        CHECK(column.pressure(p) / (1000 * gravity) == doctest::Approx(depth).epsilon(cell_size));
+    }
+}
+
+TEST_CASE("an edge is found from the share of the surroundings below it") {
+    // Integrals of N, y N and (y - mean y) dN/dy up to the edge, by the midpoint rule.
+    const auto spline = [](double y) {
+        const double far = std::abs(y);
+        return far < 0.5 ? 0.75 - y * y : 0.5 * std::pow(std::max(1.5 - far, 0.0), 2);
+    };
+    for (const double above : {-1.3, -0.8, -0.5, -0.2, 0.0, 0.4, 0.6, 1.1}) {
+        constexpr int parts = 20000;
+        const double step = (above + 1.5) / parts;
+        double share = 0, moment = 0;
+        for (int i = 0; i < parts; ++i) {
+            const double y = -1.5 + (i + 0.5) * step;
+            share += step * spline(y);
+            moment += step * y * spline(y);
+        }
+        const LevelEdge edge(share);
+        CHECK(edge.above == doctest::Approx(above).epsilon(1e-3));
+        // By parts, integral of (y - mean y) dN/dy = (above - mean y) N(above) - share.
+        CHECK(edge.sidedness ==
+              doctest::Approx(share / (share - (above - moment / share) * spline(above))).epsilon(1e-3));
+        const GroundEdge ground({0, spline(above) * 2}, share, 2);
+        CHECK(ground.height == doctest::Approx(2 * above).epsilon(1e-3));
+        CHECK(ground.distance == doctest::Approx(2 * (above - moment / share)).epsilon(1e-3));
+    }
 }
 
 TEST_CASE("water at rest under gravity stays at rest") {
@@ -96,7 +146,7 @@ TEST_CASE("water at rest under gravity stays at rest") {
         CHECK(error < 0.5);
         CHECK(std::abs(column.points()[velocity_y][p]) < 1e-4);
     }
-    CHECK(water_of(column.points()) + column.seepage() == doctest::Approx(before).epsilon(1e-12));
+    CHECK(water_of(column.points()) + column.run_off() + column.seepage() == doctest::Approx(before).epsilon(1e-12));
 }
 
 TEST_CASE("a mixture gives the same bits with one and two threads") {

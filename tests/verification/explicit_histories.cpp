@@ -134,10 +134,11 @@ void standing_wave(size_t cells, double solid, double liquid, double mobility, d
     print("amplitude", amplitude, "}");
 }
 
-/// The paper's column: profiles of pressure and saturation, means over cells, at its five times.
+/// The paper's column: profiles of pressure and saturation, means over cells, at its five times. As in the reference, the column is next to
+/// rigid and the last of them is when its last pore is filled: later by the water that it and its pores are compressed by.
 void column_explicit(size_t cells) {
     const double conductivity = 1e-4, gravity = 9.81;
-    const Ground ground{1, 0.4, 3000, elasticity(1e7, 0.3), conductivity / (water_density * gravity), 2e7, 0.85};
+    const Ground ground{1, 0.4, 3000, elasticity(2e8, 0.3), conductivity / (water_density * gravity), 1e8, 0.85};
     Hydraulics soil;
     soil.retention.alpha = 4e-5;
     soil.retention.n = 1.2;
@@ -153,7 +154,7 @@ void column_explicit(size_t cells) {
     std::puts("[");
     double now = 0, initial = 0;
     for (size_t p = 0; p < column.points().count; ++p) initial += column.points()[water_mass][p];
-    for (const double time : {20.0, 80.0, 160.0, 320.0, 600.0}) {
+    for (const double time : {20.0, 80.0, 160.0, 320.0, 600.5}) {
         const auto steps = static_cast<int64_t>(std::ceil((time - now) / column.critical_step()));
         const double dt = (time - now) / static_cast<double>(steps);
         for (int64_t i = 1; i <= steps; ++i)
@@ -170,7 +171,7 @@ void column_explicit(size_t cells) {
             saturation.push_back(mean(column.saturation(low), column.saturation(high)));
             for (const size_t p : {low, high}) water += column.points()[water_mass][p] + column.points()[water_due][p];
         }
-        const double missed = (water - initial - column.rained() + column.seepage()) / initial;
+        const double missed = (water - initial - column.rained() + column.run_off() + column.seepage()) / initial;
         std::printf("{\"time\": %.17g, \"steps\": %lld, \"missed\": %.17g,\n", time, static_cast<long long>(steps),
                     missed);
         print("height", height, ",");

@@ -1,7 +1,5 @@
 #include "motion/explicit/explicit_mixture.hpp"
 
-#include "motion/explicit/transfer.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -34,7 +32,8 @@ struct LiquidGift {
 using LiquidGiftBlock = std::array<LiquidGift, block_size>;
 
 void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
-                const BlockValues& pressure, const BlockValues& mobility, LiquidGiftBlock& gift) {
+                const BlockValues& pressure, const BlockValues& mobility, const BlockValues& full_mobility,
+                LiquidGiftBlock& gift) {
     for (size_t k = 0; k < count; ++k) {
         const double whole = pressure[k] + unit_weight * y[k];
         const double push = volume[k] * whole;
@@ -43,7 +42,7 @@ void fill_gifts(size_t count, const double* y, const double* volume, const doubl
         gift[k].value[0] = mass[k] * whole;
         gift[k].value[1] = mass[k] * mobility[k];
         gift[k].value[2] = volume[k];
-        gift[k].value[3] = mass[k] * y[k];
+        gift[k].value[3] = mass[k] * full_mobility[k];
     }
 }
 
@@ -57,19 +56,6 @@ void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline
                        by_value = spline.slope_y[j][k] * gift[k].along_y;
             for (size_t i = 0; i < 3; ++i)
                 patch.node[j][i] += spline.slope_x[i][k] * by_slope + spline.value_x[i][k] * by_value;
-        }
-    }
-}
-
-void scatter_edge_height(const Grid& grid, size_t count, const SplineBlock& spline, const double* y,
-                         const double* volume, std::vector<NodeVector>& edge_height) {
-    NodePatch<Pair, true> patch(&edge_height.data()->x, grid, spline.first[0]);
-    for (size_t k = 0; k < count; ++k) {
-        patch.move_to(spline.first[k]);
-        const double size = volume[k] * y[k];
-        for (size_t j = 0; j < 3; ++j) {
-            const Pair row(size * spline.value_y[j][k], size * spline.slope_y[j][k]);
-            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += row * Pair(spline.slope_x[i][k], spline.value_x[i][k]);
         }
     }
 }
@@ -112,7 +98,7 @@ template <Filling filling>
 void ExplicitMixture<filling>::restart() {
     nodes_.start_grid();
     restarted_ = true;
-    nodes_.rained = nodes_.seepage = 0;
+    nodes_.rained = nodes_.run_off = nodes_.seepage = 0;
     arrange_points();
     std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
@@ -141,6 +127,20 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     return true;
 }
 
+/// Points pass water on to others around the same nodes, until all have the nodes' head.
+template <Filling filling>
+void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt) {
+    WaterBlock water;
+    VelocityBlock evening;
+    find_water(first, count, water);
+    gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
+    const double unit_weight = nodes_.gravity * water_.density;
+    for (size_t k = 0; k < count; ++k) {
+        const double head = water.pressure[k] + unit_weight * points_[position_y][first + k];
+        points_[water_mass][first + k] += dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head);
+    }
+}
+
 /// What the flow of the last step brings to the points: they get it with the strain of the same time, in the next step.
 template <Filling filling>
 void ExplicitMixture<filling>::owe_water(Strip strip) {
@@ -161,15 +161,16 @@ void ExplicitMixture<filling>::find_water(size_t first, size_t count, WaterBlock
         const size_t p = first + k;
         const auto soil = static_cast<size_t>(points_.soil[p]);
         const double filled = share_filled(p);
+        water.full_mobility[k] = hydraulics_[soil].mobility;
         if constexpr (filling == Filling::saturated) {
             water.pressure[k] = water_.bulk_modulus * (filled - 1);
-            water.mobility[k] = hydraulics_[soil].mobility;
+            water.mobility[k] = water.full_mobility[k];
         } else {
             const SaturationTable& table = tables_[soil];
             const SaturationTable::State state = table.at(filled);
             const double excess = std::max(filled / table.maximum() - 1, 0.0);
             water.pressure[k] = state.pressure + water_.bulk_modulus * excess;
-            water.mobility[k] = hydraulics_[soil].mobility * state.permeability;
+            water.mobility[k] = water.full_mobility[k] * state.permeability;
             water.suction[k] = -state.pressure;
             water.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
         }
@@ -215,9 +216,9 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         scatter_force(nodes_.grid, count, spline, volume, total_xx.data(), total_yy.data(), points_[stress_xy] + first,
                       nodes_.force);
         const double* y = points_[position_y] + first;
-        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, water.pressure, water.mobility, gift);
+        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, water.pressure, water.mobility,
+                   water.full_mobility, gift);
         scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
-        scatter_edge_height(nodes_.grid, count, spline, y, volume, nodes_.edge_height);
         scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
     }
 }
@@ -235,6 +236,7 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         double* x = points_[position_x] + first;
         double* y = points_[position_y] + first;
         spline.find(grid, x, y, count);
+        if (filling == Filling::unsaturated) even_out(first, count, spline, dt);
         gather_divergence(grid, nodes_.velocity, count, spline, dilation);
         gather_divergence(grid, nodes_.flux, count, spline, outflow);
         take_velocity<keeps>(grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
@@ -285,7 +287,7 @@ void ExplicitMixture<filling>::arrange_points() {
     nodes_.for_each_node([&](size_t i) { returned[i] = nodes_.returned[i]; });
     nodes_.returned = std::move(returned);
     if (arrangement_.arrange(points_, nodes_.grid)) {
-        for (auto* field : {&nodes_.velocity, &nodes_.liquid_velocity, &nodes_.flux, &nodes_.rates})
+        for (auto* field : {&nodes_.velocity, &nodes_.liquid_velocity, &nodes_.flux, &nodes_.rates, &nodes_.evening})
             move_nodes(*field, old, nodes_.grid);
         move_nodes(nodes_.returned, old, nodes_.grid);
         nodes_.resize();

@@ -10,6 +10,7 @@
 #include "motion/explicit/explicit_motion.hpp"
 #include "motion/explicit/grid_mixture.hpp"
 #include "motion/explicit/stress.hpp"
+#include "motion/explicit/transfer.hpp"
 #include "points/free_points.hpp"
 
 #include <cstdint>
@@ -56,7 +57,8 @@ public:
     void set_edge_pressure(double pressure) { nodes_.edge_pressure = pressure; }  ///< Pa
     /// Rain from now on: a volume per horizontal area, m/s, at each x (m).
     void set_rain(std::function<double(double x)> rate);
-    [[nodiscard]] double rained() const { return nodes_.rained; }  ///< kg, since restart()
+    [[nodiscard]] double rained() const { return nodes_.rained; }    ///< kg, since restart()
+    [[nodiscard]] double run_off() const { return nodes_.run_off; }  ///< kg
     void set_immersed(bool immersed) { nodes_.immersed = immersed; }
     [[nodiscard]] double seepage() const { return nodes_.seepage; }  ///< kg
 
@@ -72,7 +74,7 @@ public:
 
 private:
     struct WaterBlock {
-        BlockValues pressure, mobility, suction, effective_saturation;
+        BlockValues pressure, mobility, full_mobility, suction, effective_saturation;
     };
 
     void arrange_points();
@@ -85,6 +87,7 @@ private:
     [[nodiscard]] double pore_stress(const WaterBlock& water, size_t k) const;
     void find_wave_speed();
     void fall_rain();
+    void even_out(size_t first, size_t count, const SplineBlock& spline, double dt);
     void owe_water(Strip strip);
     void find_water(size_t first, size_t count, WaterBlock& water) const;
     void stress_and_forces(Strip strip, double dt);

@@ -1,5 +1,7 @@
 #include "motion/explicit/grid_mixture.hpp"
 
+#include "motion/explicit/ground_edge.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,12 @@ namespace talus {
 namespace {
 
 constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is at the ground's edge
+
+/// Of what Darcy's law lets pass between the halves of a cell. Nodes do not see what one point has too much and its neighbour too little:
+/// it would grow by chance from step to step, until the pressure of the fuller one counts (docs/verification.md).
+constexpr double evening_share = 0.5;
+
+double dot(const NodeVector& a, const NodeVector& b) { return a.x * b.x + a.y * b.y; }
 
 }  // namespace
 
@@ -17,8 +25,9 @@ void GridMixture::resize() {
     force.assign(nodes, {});
     gradients.assign(nodes, {});
     means.assign(nodes, {});
-    edge_height.assign(nodes, {});
     returned.resize(nodes);
+    capacity.resize(nodes);
+    evening.resize(nodes);
     velocity.resize(nodes);
     liquid_velocity.resize(nodes);
     flux.resize(nodes);
@@ -30,7 +39,6 @@ void GridMixture::begin_step() {
         force[i] = {0, -gravity * (momentum[i].mass + liquid_momentum[i].mass)};
         gradients[i] = {};
         means[i] = {};
-        edge_height[i] = {};
     });
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
         move_inside(momentum[nodes.inside], momentum[nodes.beyond], mirror);
@@ -54,7 +62,7 @@ void GridMixture::begin_step() {
 void GridMixture::end_step(double dt) {
     fold_forces();
     for_each_node([this, dt](size_t i) { solve(i, dt); });
-    if (!rain.empty()) rain_on(dt);
+    if (!immersed) cross_surface(dt);
     mirror();
     flow_time = dt;
     speed = largest_speed();
@@ -65,7 +73,6 @@ void GridMixture::end_step(double dt) {
 }
 
 void GridMixture::fold_forces() {
-    for_each_node([this](size_t i) { edge_height[i].y += means[i].volume; });
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
         add_mirrored(force[nodes.inside], mirror, force[nodes.beyond]);
     });
@@ -78,12 +85,10 @@ void GridMixture::fold_forces() {
         out = {};
         NodeMeans &mean_in = means[nodes.inside], &mean_out = means[nodes.beyond];
         mean_in.push += mean_out.push;
-        mean_in.height += mean_out.height;
         mean_in.mobility += mean_out.mobility;
+        mean_in.full_mobility += mean_out.full_mobility;
         mean_in.volume += mean_out.volume;
         mean_out = {};
-        add_mirrored(edge_height[nodes.inside], mirror, edge_height[nodes.beyond]);
-        edge_height[nodes.beyond] = {};
     });
 }
 
@@ -91,21 +96,44 @@ bool GridMixture::is_at_edge(size_t node) const {
     return means[node].volume > 0 && means[node].volume < full_share * cell_volume();
 }
 
-/// Every column's rain goes to its nodes at the edge, in proportion to the edge's horizontal width there.
-void GridMixture::rain_on(double dt) {
+double GridMixture::facing_up(size_t node) const {
+    return is_at_edge(node) ? std::max(gradients[node].edge_y, 0.0) : 0.0;
+}
+
+/// Every column's rain falls on its nodes at the edge in proportion to the edge's horizontal width there. What one of them cannot take, or
+/// gives back, is offered to the others. What none takes leaves: within the column's own rain it is run-off, the rest seepage.
+void GridMixture::cross_surface(double dt) {
     const auto columns = static_cast<size_t>(grid.cells[0]);
-    std::vector<double>& width = column_width_;
-    width.assign(columns, 0.0);
-    const auto facing_up = [this](size_t i) { return is_at_edge(i) ? std::max(gradients[i].edge_y, 0.0) : 0.0; };
-    for_each_node([&](size_t i) { width[i % columns] += facing_up(i); });
+    surfaces_.assign(columns, {});
+    for_each_node([&](size_t i) { surfaces_[i % columns].width += facing_up(i); });
+    const auto falls_on = [&](size_t i) {
+        const double up = rain.empty() ? 0.0 : facing_up(i);
+        return up > 0 ? rain[i % columns] * grid.cell_size * up / surfaces_[i % columns].width : 0.0;
+    };
+    const auto takes = [&](size_t i) { return std::min(falls_on(i), capacity[i]); };
     for_each_node([&](size_t i) {
-        const size_t column = i % columns;
-        const double up = facing_up(i);
-        if (!(up > 0)) return;
-        const double rate = rain[column] * grid.cell_size * up / width[column];
-        returned[i] += rate;
-        rained += dt * rate;
+        if (!is_at_edge(i)) return;
+        returned[i] += takes(i);
+        if (!(facing_up(i) > 0)) {
+            seepage -= dt * takes(i);
+            return;
+        }
+        OpenSurface& surface = surfaces_[i % columns];
+        surface.fallen += falls_on(i);
+        surface.left += falls_on(i) - takes(i);
+        surface.room += capacity[i] - takes(i);
     });
+    for_each_node([&](size_t i) {
+        const OpenSurface& surface = surfaces_[i % columns];
+        if (facing_up(i) > 0 && surface.left > 0 && surface.room > 0)
+            returned[i] += (capacity[i] - takes(i)) * std::min(surface.left / surface.room, 1.0);
+    });
+    for (const OpenSurface& surface : surfaces_) {
+        const double leaves = std::max(surface.left - surface.room, 0.0), runs_off = std::min(leaves, surface.fallen);
+        rained += dt * surface.fallen;
+        run_off += dt * runs_off;
+        seepage += dt * (leaves - runs_off);
+    }
 }
 
 void GridMixture::solve(size_t node, double dt) {
@@ -114,36 +142,53 @@ void GridMixture::solve(size_t node, double dt) {
     const NodeMeans& mean = means[node];
     flux[node] = {};
     returned[node] = 0;
+    capacity[node] = 0;
+    evening[node] = {};
     if (!(mass > 0) || !(mean.volume > 0)) return;
-    const double unit_weight = gravity * liquid_density;
-    const double push = mean.push / mass, pressure = push - unit_weight * mean.height / mass;
+    const double push = mean.push / mass;
     const double liquid_content = liquid_mass / (liquid_density * mean.volume);
-    const double drag = dt * liquid_content * mass / (mean.mobility * liquid_density);
+    const auto drag_of = [&](double mobility) { return dt * liquid_content * mass / (mobility * liquid_density); };
+    const auto conductance_of = [&](double mobility) { return dt * liquid_content / (1 + drag_of(mobility)); };
+    const double drag = drag_of(mean.mobility), conductance = conductance_of(mean.mobility);
+    const double spread = evening_share * conductance * mean.volume / (cell_volume() * mass);
+    evening[node] = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
     const double moved = liquid_mass / (1 + drag), coupled = mass + moved * drag;
     NodeVector &solid = velocity[node], &liquid = liquid_velocity[node];
-    const NodeVector start = solid, liquid_start = liquid;
     const auto move = [&](double NodeVector::*c, double pushed, double normal) {
-        const double alone = liquid_start.*c + response * pushed;
-        const double whole =
-            mass * start.*c + liquid_mass * liquid_start.*c + dt * (force[node].*c - edge_pressure * normal);
+        const double start = solid.*c, liquid_start = liquid.*c;
+        const double alone = liquid_start + response * pushed;
+        const double whole = mass * start + liquid_mass * liquid_start + dt * (force[node].*c - edge_pressure * normal);
         solid.*c = (whole - moved * alone) / coupled;
         liquid.*c = (alone + drag * solid.*c) / (1 + drag);
         flux[node].*c = liquid_mass / mean.volume * (liquid.*c - solid.*c);
     };
-    const auto leaving = [&](const NodeVector& held) {
-        move(&NodeVector::x, sums.push_x - held.x, sums.edge_x);
-        move(&NodeVector::y, sums.push_y - held.y, sums.edge_y);
-        return flux[node].x * sums.edge_x + flux[node].y * sums.edge_y;
+    const NodeVector outwards{sums.edge_x, sums.edge_y};
+    const auto flow = [&](const NodeVector& pushed) {
+        move(&NodeVector::x, pushed.x, outwards.x);
+        move(&NodeVector::y, pushed.y, outwards.y);
     };
-    if ((immersed || pressure > 0) && is_at_edge(node)) {
-        const double rate = leaving({unit_weight * edge_height[node].x, unit_weight * edge_height[node].y});
-        if (immersed || rate >= 0) {
-            seepage += dt * rate;
-            return;
-        }
+    const NodeVector inner{sums.push_x - push * outwards.x, sums.push_y - push * outwards.y};
+    if (!is_at_edge(node)) {
+        flow(inner);
+        returned[node] = dot(flux[node], outwards);
+        return;
     }
-    returned[node] = leaving({push * sums.edge_x, push * sums.edge_y});
+    const GroundEdge edge(outwards, mean.volume / cell_volume(), grid.cell_size);
+    const double edge_head = gravity * liquid_density * (height_of(node) + edge.height);
+    if (immersed) {
+        flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y});
+        seepage += dt * dot(flux[node], outwards);
+        return;
+    }
+    const NodeVector pushed = edge.stretched(inner);
+    flow(pushed);
+    flux[node] = edge.stretched(flux[node]);
+    returned[node] = dot(flux[node], outwards);
+    if (!(edge.distance > 0)) return;
+    const double carried = returned[node] - conductance / mean.volume * dot(edge.stretched(pushed), outwards);
+    const double drawn = conductance_of(mean.full_mobility) * edge.length * (edge_head - push) / edge.distance;
+    capacity[node] = drawn - carried;
 }
 
 /// Beyond a wall the nodes move as the mirrored ground would; water slides along every wall.
@@ -155,6 +200,7 @@ void GridMixture::mirror() {
         for (auto* field : {&liquid_velocity, &flux})
             (*field)[nodes.beyond] = {mirror.x * (*field)[nodes.inside].x, mirror.y * (*field)[nodes.inside].y};
         rates[nodes.beyond] = rates[nodes.inside];
+        evening[nodes.beyond] = evening[nodes.inside];
     });
 }
 

@@ -7,8 +7,8 @@
 // Pressure force and storage are each other's adjoint, and no water is lost between them. With the liquid's weight in it, the pressure
 // p + rho_l g y of the points pushes the nodes with sum V (p + rho_l g y - its mean at node j) grad N_j: no force on water at rest, no flow
 // through the edge of the ground. The flux F leaves a node's surroundings with sum V N_j div F - F_j . e_j, e_j = sum V grad N_j, which adds
-// up to zero over all nodes; points get their shares of it by N_j and their solid mass. Where water may leave, at the edge where p_j > 0,
-// the edge has p = 0 in place of the mean, and F_j . e_j seeps out.
+// up to zero over all nodes; points get their shares of it by N_j and their solid mass. Through the edge goes what the difference to p = 0
+// there drives over the distance to the middle of the ground at the node, into full pores and at most what rain offers, or out.
 #pragma once
 
 #include "motion/explicit/grid_motion.hpp"
@@ -26,10 +26,18 @@ struct NodeGradients {
 
 /// Sums over points with the values of the splines.
 struct NodeMeans {
-    double push = 0;      ///< of N m (p + rho_l g y)
-    double mobility = 0;  ///< of N m lambda, lambda = kappa / mu
-    double volume = 0;    ///< of N V
-    double height = 0;    ///< of N m y
+    double push = 0;           ///< of N m (p + rho_l g y)
+    double mobility = 0;       ///< of N m lambda, lambda = kappa / mu
+    double volume = 0;         ///< of N V
+    double full_mobility = 0;  ///< of N m lambda, were all pores full
+};
+
+/// Of a column of the grid: the edge that faces up.
+struct OpenSurface {
+    double width = 0;   ///< m
+    double fallen = 0;  ///< of rain, kg/s
+    double left = 0;    ///< of rain and seepage that nodes have not taken, kg/s
+    double room = 0;    ///< in nodes that could take more, kg/s
 };
 
 struct GridMixture : WalledGrid {
@@ -40,6 +48,9 @@ struct GridMixture : WalledGrid {
     double speed = 0;           ///< m/s, the solid's speed_bound() at the end of the step
     bool immersed = false;      ///< the edge stands in water without pressure: it may enter too
     double cell_volume() const { return grid.cell_size * grid.cell_size; }
+    double height_of(size_t node) const {  ///< y, m
+        return grid.corner[1] + (static_cast<double>(node / static_cast<size_t>(grid.cells[0])) + 0.5) * grid.cell_size;
+    }
 
     std::vector<NodeMomentum> momentum;         ///< of the solid; more: sum of m div v
     std::vector<NodeMomentum> liquid_momentum;  ///< more: less the sum of V N div F, kg/s
@@ -50,12 +61,14 @@ struct GridMixture : WalledGrid {
     std::vector<NodeVector> force;  ///< of the total stress, and the weight
     std::vector<NodeGradients> gradients;
     std::vector<NodeMeans> means;
-    std::vector<NodeVector> edge_height;  ///< sum of V (y grad N + N grad y), the edge's y times its normal, m2
-    std::vector<double> returned;         ///< F_j . e_j, kg/s
-    std::vector<double> rain;             ///< onto each column of the grid that holds ground, kg/(m2 s); empty: none
-    double flow_time = 0;                 ///< s that the rates of water are of: what points have not got yet
-    double rained = 0;                    ///< kg, in the steps ended
-    double seepage = 0;                   ///< kg, likewise; negative where an immersed ground drank
+    std::vector<NodeVector> evening;  ///< of the points' heads: x, kg/s per kg of solid and Pa; y, times the node's
+    std::vector<double> returned;     ///< F_j . e_j and what crosses the surface, kg/s
+    std::vector<double> capacity;  ///< of the edge at no pressure there to let water in, kg/s; negative: it comes out
+    std::vector<double> rain;      ///< onto each column of the grid that holds ground, kg/(m2 s); empty: none
+    double flow_time = 0;          ///< s that the rates of water are of: what points have not got yet
+    double rained = 0;             ///< kg, in the steps ended
+    double run_off = 0;            ///< kg, likewise
+    double seepage = 0;            ///< kg, likewise; negative where an immersed ground drank
 
     void resize();
     void begin_step();
@@ -65,11 +78,12 @@ struct GridMixture : WalledGrid {
 private:
     [[nodiscard]] bool is_at_edge(size_t node) const;
     void fold_forces();
-    void rain_on(double dt);
+    [[nodiscard]] double facing_up(size_t node) const;
+    void cross_surface(double dt);
     void solve(size_t node, double dt);
     void mirror();
 
-    std::vector<double> column_width_;  // m
+    std::vector<OpenSurface> surfaces_;  // one a column
 };
 
 }  // namespace talus

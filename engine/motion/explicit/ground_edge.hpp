@@ -1,0 +1,67 @@
+// The edge of the ground in the surroundings of a node, found from the sums of V N and of V grad N over points.
+//
+// For a linear field p, integral of (p - mean p) grad N is less there than -V grad p, with V = integral of N, because the surroundings are
+// ground on one side alone: a quarter of it where only the tip of N lies in the ground. Force and flow are both stretched along the edge's
+// normal by the square root of what is missing: they stay each other's adjoint, and a linear pressure drives the flow that it should.
+#pragma once
+
+#include "motion/explicit/grid_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+/// Ground that fills a share of a node's surroundings up to a level edge.
+struct LevelEdge {
+    double above = 0;  ///< of the edge, from the node, in cells
+    double sidedness =
+        1;  ///< V over integral of -(y - mean y) dN/dy: 1 in full surroundings, 4 in all that hold less than a sixth
+    explicit LevelEdge(double share);
+};
+
+inline LevelEdge::LevelEdge(double share) {
+    double spline = 0, moment = 0;  // N at the edge; integral of y N up to it
+    if (share <= 1.0 / 6) {
+        above = std::cbrt(6 * share) - 1.5;
+        sidedness = 4;
+        return;
+    }
+    if (share < 5.0 / 6) {
+        for (int i = 0; i < 8; ++i) above = (share - 0.5 + above * above * above / 3) / 0.75;
+        spline = 0.75 - above * above;
+        moment = -13.0 / 64 + above * above * (0.375 - 0.25 * above * above);
+    } else {
+        const double rest = std::cbrt(6 * std::max(1 - share, 0.0));
+        above = 1.5 - rest;
+        spline = 0.5 * rest * rest;
+        moment = -rest * rest * rest * (0.25 - 0.125 * rest);
+    }
+    sidedness = share / (share - (above - moment / share) * spline);
+}
+
+struct GroundEdge {
+    NodeVector normal;    ///< outwards; none where the sum of V grad N is none
+    double length = 0;    ///< that sum's, m
+    double height = 0;    ///< of the edge above the node, m
+    double distance = 0;  ///< from the middle of the ground to the edge, m; 0: no edge
+    double more = 0;      ///< what a stretch adds along the normal, per unit
+
+    /// `sum`: of V grad N, m; `share`: of the node's surroundings that is ground.
+    GroundEdge(const NodeVector& sum, double share, double cell_size) {
+        length = std::hypot(sum.x, sum.y);
+        if (!(length > 0)) return;
+        const LevelEdge level(share);
+        normal = {sum.x / length, sum.y / length};
+        height = level.above * cell_size * normal.y;
+        distance = share * cell_size * cell_size * (1 - 1 / level.sidedness) / length;
+        more = std::sqrt(level.sidedness) - 1;
+    }
+
+    [[nodiscard]] NodeVector stretched(const NodeVector& v) const {
+        const double along = more * (normal.x * v.x + normal.y * v.y);
+        return {v.x + along * normal.x, v.y + along * normal.y};
+    }
+};
+
+}  // namespace talus
