@@ -175,7 +175,7 @@ void fill_with_water(const Scene& scene, const Mesh& mesh, const Locator& locato
                      const std::vector<int32_t>& cell, FreePoints& points) {
     std::vector<HydraulicTable> tables;
     for (const Soil& soil : scene.soils) tables.emplace_back(soil.hydraulics);
-    for (size_t f = dry_fields; f < point_fields; ++f) points.field[f].assign(points.count, 0.0);
+    for (size_t f = dry_fields; f < wet_fields; ++f) points.field[f].assign(points.count, 0.0);
     for (size_t p = 0; p < points.count; ++p) {
         const CellPlace place = locator.locate(points[position_x][p], points[position_y][p]);
         const double here = value_at(mesh, pressure, place, cell[p]);

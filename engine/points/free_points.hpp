@@ -35,6 +35,15 @@ enum PointField : size_t {
     liquid_affine_xy,
     liquid_affine_yx,
     liquid_affine_yy,
+    wet_fields,             ///< so many has a ground whose gas is at rest
+    gas_mass = wet_fields,  ///< kg per metre of thickness
+    gas_due,                ///< as the water's
+    gas_velocity_x,         ///< m/s
+    gas_velocity_y,
+    gas_affine_xx,  ///< as the solid's, 1/s
+    gas_affine_xy,
+    gas_affine_yx,
+    gas_affine_yy,
     point_fields
 };
 

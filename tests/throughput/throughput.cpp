@@ -63,7 +63,7 @@ void run(int32_t cells, int32_t threads, bool last) {
     // Water as soft as the step of the dry column bears; the work is the same.
     time("two_phase", cells, threads, last, [&] {
         return ExplicitMixture<Filling::saturated>(size, box, 9.81, {yielding}, {{grain_density, 1e-8, 0, false}}, {},
-                                                   {1000, 1e6}, column(cells, point_fields), threads);
+                                                   {1000, 1e6}, column(cells, wet_fields), threads);
     });
 }
 

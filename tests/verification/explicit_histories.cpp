@@ -32,7 +32,7 @@ Walls rollers(double cell_size) {
 FreePoints column_of_points(const Ground& ground, size_t cells) {
     const double cell_size = ground.height / static_cast<double>(cells), spacing = cell_size / 2;
     FreePoints points;
-    points.assign(2 * cells, point_fields);
+    points.assign(2 * cells, wet_fields);
     for (size_t p = 0; p < points.count; ++p) {
         points[position_x][p] = spacing;
         points[position_y][p] = (static_cast<double>(p) + 0.5) * spacing;

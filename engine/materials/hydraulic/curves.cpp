@@ -71,6 +71,19 @@ double relative_permeability(const Hydraulics& hydraulics, double suction) {
     return suction <= 0 ? 1.0 : std::clamp(raw_relative_permeability(hydraulics, suction), 0.0, 1.0);
 }
 
+double gas_permeability(const Retention& retention, double suction) {
+    if (suction <= 0) return 0.0;
+    if (retention.model == RetentionModel::van_genuchten) {
+        const double m = 1.0 - 1.0 / retention.n, one_minus_u = van_genuchten(retention, suction).one_minus_u;
+        const double dry = one_minus_u < 1 ? -std::expm1(m * std::log1p(-one_minus_u)) : 1.0;  // 1 - S_e
+        return std::sqrt(dry) * std::pow(one_minus_u, 2.0 * m);
+    }
+    const double wet = effective_saturation(retention, suction);
+    if (retention.model == RetentionModel::brooks_corey)
+        return std::sqrt(1.0 - wet) * std::pow(1.0 - std::pow(wet, 1.0 + 1.0 / retention.n), 2.0);
+    return (1.0 - wet) * (1.0 - wet) * (1.0 - wet * wet);
+}
+
 double suction_scale(const Retention& retention) {
     if (retention.model != RetentionModel::tabulated) return 1.0 / retention.alpha;
     const auto positive =

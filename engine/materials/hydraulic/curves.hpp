@@ -14,6 +14,10 @@ double effective_saturation(const Retention& retention, double suction);
 /// k_r(suction), between 0 and 1; 1 for suction <= 0.
 double relative_permeability(const Hydraulics& hydraulics, double suction);
 
+/// k_rg(suction) of the gas, between 0 and 1; 0 for suction <= 0. Mualem's integral over the retention, taken from its dry end, times
+/// (1 - S_e)^1/2: van Genuchten (Parker, Lenhard & Kuppusamy 1987), Brooks & Corey; the others have Corey's (1954) curve.
+double gas_permeability(const Retention& retention, double suction);
+
 /// The suction in Pa over which the retention bends: 1/alpha, or the first positive suction of a table.
 double suction_scale(const Retention& retention);
 

@@ -21,6 +21,15 @@ public:
         double permeability;  ///< k_r, -
     };
 
+    /// What pores that also hold moving gas need.
+    struct MixedState {
+        double suction;           ///< Pa
+        double suction_slope;     ///< by the saturation, Pa
+        double permeability;      ///< k_rl, -
+        double gas_permeability;  ///< k_rg, -
+    };
+    [[nodiscard]] MixedState mixed_at(double saturation) const;
+
     /// Of a saturation (-). At the maximum one and above: no suction; at the residual one and below: the dry end of the table.
     [[nodiscard]] State at(double saturation) const;
 
@@ -33,10 +42,16 @@ private:
     struct Row {
         double pressure, pressure_slope, permeability, permeability_slope;  // slopes per row
     };
+    struct GasRow {
+        double permeability, slope;  // likewise
+    };
+    [[nodiscard]] double place_of(double effective) const;
 
     double residual_, maximum_;
     double chord_pressure_, chord_permeability_, chord_effective_;  // where the chord begins
+    double chord_gas_permeability_;
     std::vector<Row> rows_;
+    std::vector<GasRow> gas_rows_;
 };
 
 namespace saturation_rows {
@@ -44,19 +59,43 @@ inline constexpr double lowest = -25, spacing = 0.02;  // of ln(S_e / (1 - S_e))
 inline constexpr int count = 2501;
 }  // namespace saturation_rows
 
+inline double SaturationTable::place_of(double effective) const {
+    const double logit = effective > 0 ? std::log(effective / (1 - effective)) : saturation_rows::lowest;
+    return std::max((logit - saturation_rows::lowest) / saturation_rows::spacing, 0.0);
+}
+
 inline SaturationTable::State SaturationTable::at(double saturation) const {
     const double effective = (saturation - residual_) / (maximum_ - residual_);
     if (effective >= chord_effective_) {
         const double share = std::max(1 - effective, 0.0) / (1 - chord_effective_);
         return {share * chord_pressure_, 1 - share * (1 - chord_permeability_)};
     }
-    const double logit = effective > 0 ? std::log(effective / (1 - effective)) : saturation_rows::lowest;
-    const double place = std::max((logit - saturation_rows::lowest) / saturation_rows::spacing, 0.0);
+    const double place = place_of(effective);
     const auto row = static_cast<size_t>(std::min(place, saturation_rows::count - 2.0));
     const double t = place - static_cast<double>(row);
     const Row &a = rows_[row], &b = rows_[row + 1];
     return {hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t).value,
             hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t).value};
+}
+
+inline SaturationTable::MixedState SaturationTable::mixed_at(double saturation) const {
+    const double effective = (saturation - residual_) / (maximum_ - residual_);
+    if (effective >= 1) return {0, 0, 1, 0};
+    if (effective >= chord_effective_) {
+        const double by_share = 1 / (1 - chord_effective_), share = (1 - effective) * by_share;
+        return {-share * chord_pressure_, chord_pressure_ * by_share / (maximum_ - residual_),
+                1 - share * (1 - chord_permeability_), share * chord_gas_permeability_};
+    }
+    const double place = place_of(effective);
+    const auto row = static_cast<size_t>(std::min(place, saturation_rows::count - 2.0));
+    const double t = place - static_cast<double>(row);
+    const Row &a = rows_[row], &b = rows_[row + 1];
+    const GasRow &gas_a = gas_rows_[row], &gas_b = gas_rows_[row + 1];
+    const Hermite pressure = hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t);
+    const double by_row = saturation_rows::spacing * effective * (1 - effective) * (maximum_ - residual_);
+    return {-pressure.value, place > 0 ? -pressure.slope / by_row : 0,
+            hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t).value,
+            hermite(gas_a.permeability, gas_b.permeability, gas_a.slope, gas_b.slope, t).value};
 }
 
 }  // namespace talus

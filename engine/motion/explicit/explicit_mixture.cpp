@@ -25,6 +25,10 @@ void add_apparent_cohesion(const std::vector<ExplicitHydraulics>& hydraulics, co
     }
 }
 
+/// Air in pores that it left is never thinner than this share of the atmosphere.
+constexpr double least_gas_pressure = 1e-6;
+constexpr double least_gas_permeability = 1e-9;  // where no gas is left, so that nodes may divide by it
+
 /// What a point adds to the nodes' sums: with the splines' slope along x and along y, and with their value.
 struct LiquidGift {
     Quad along_x = Quad::Zero(), along_y = Quad::Zero(), value = Quad::Zero();
@@ -60,6 +64,30 @@ void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline
     }
 }
 
+/// Likewise of its gas.
+struct GasGift {
+    Quad value = Quad::Zero();
+    double push = 0;
+};
+using GasGiftBlock = std::array<GasGift, block_size>;
+
+void scatter_gas(const Grid& grid, size_t count, const SplineBlock& spline, const GasGiftBlock& gift, NodeGas& gas) {
+    NodePatch<Quad, true> means(&gas.means.data()->push, grid, spline.first[0]);
+    NodePatch<Pair, true> push(&gas.push.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        means.move_to(spline.first[k]);
+        push.move_to(spline.first[k]);
+        for (size_t j = 0; j < 3; ++j) {
+            const Quad row = spline.value_y[j][k] * gift[k].value;
+            const Pair along = gift[k].push * Pair(spline.value_y[j][k], spline.slope_y[j][k]);
+            for (size_t i = 0; i < 3; ++i) {
+                means.node[j][i] += spline.value_x[i][k] * row;
+                push.node[j][i] += along * Pair(spline.slope_x[i][k], spline.value_x[i][k]);
+            }
+        }
+    }
+}
+
 void scatter_means(const Grid& grid, size_t count, const SplineBlock& spline, const LiquidGiftBlock& gift,
                    std::vector<NodeMeans>& means) {
     NodePatch<Quad, true> patch(&means.data()->push, grid, spline.first[0]);
@@ -78,18 +106,20 @@ template <Filling filling>
 ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, double gravity,
                                           std::vector<ExplicitSoil> soils, std::vector<ExplicitHydraulics> hydraulics,
                                           std::vector<SaturationTable> tables, const ExplicitWater& water,
-                                          FreePoints points, int32_t threads)
+                                          FreePoints points, int32_t threads, const ExplicitGas& gas)
     : soils_(std::move(soils)),
       hydraulics_(std::move(hydraulics)),
       tables_(std::move(tables)),
       water_(water),
       points_(std::move(points)),
+      gas_(gas),
       arrangement_(threads) {
     for (const ExplicitSoil& soil : soils_) yields_ = yields_ || soil.yields;
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
     nodes_.gravity = gravity;
     nodes_.liquid_density = water.density;
+    nodes_.gas.density = gas.density;
     nodes_.least_mass = points_.least(solid_mass);
     restart();
 }
@@ -98,9 +128,10 @@ template <Filling filling>
 void ExplicitMixture<filling>::restart() {
     nodes_.start_grid();
     restarted_ = true;
-    nodes_.rained = nodes_.run_off = nodes_.seepage = 0;
+    nodes_.rained = nodes_.run_off = nodes_.seepage = nodes_.gas.escaped = 0;
     arrange_points();
     std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
+    std::fill(nodes_.gas.returned.begin(), nodes_.gas.returned.end(), 0.0);
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
@@ -127,17 +158,23 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     return true;
 }
 
-/// Points pass water on to others around the same nodes, until all have the nodes' head.
+/// Points pass water and gas on to others around the same nodes, until all have the nodes' head.
 template <Filling filling>
 void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt) {
-    WaterBlock water;
+    FluidBlock fluids;
     VelocityBlock evening;
-    find_water(first, count, water);
+    find_fluids(first, count, fluids);
     gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
     const double unit_weight = nodes_.gravity * water_.density;
     for (size_t k = 0; k < count; ++k) {
-        const double head = water.pressure[k] + unit_weight * points_[position_y][first + k];
+        const double head = fluids.pressure[k] + unit_weight * points_[position_y][first + k];
         points_[water_mass][first + k] += dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head);
+    }
+    if constexpr (has_gas) {
+        gather_values(nodes_.grid, nodes_.gas.evening, count, spline, evening);
+        for (size_t k = 0; k < count; ++k)
+            points_[gas_mass][first + k] +=
+                dt * fluids.gas_volume[k] * (evening.y[k] - evening.x[k] * fluids.gas_potential[k]);
     }
 }
 
@@ -152,29 +189,109 @@ void ExplicitMixture<filling>::owe_water(Strip strip) {
         gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
         for (size_t k = 0; k < count; ++k)
             points_[water_due][first + k] = nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
+        if constexpr (has_gas) {
+            gather_value(nodes_.grid, nodes_.gas.rates, count, spline, rates.y);
+            for (size_t k = 0; k < count; ++k)
+                points_[gas_due][first + k] = nodes_.flow_time * gas_weight(first + k) * rates.y[k];
+        }
     }
 }
 
 template <Filling filling>
-void ExplicitMixture<filling>::find_water(size_t first, size_t count, WaterBlock& water) const {
+void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBlock& fluids) const {
     for (size_t k = 0; k < count; ++k) {
         const size_t p = first + k;
         const auto soil = static_cast<size_t>(points_.soil[p]);
-        const double filled = share_filled(p);
-        water.full_mobility[k] = hydraulics_[soil].mobility;
+        fluids.full_mobility[k] = hydraulics_[soil].mobility;
         if constexpr (filling == Filling::saturated) {
-            water.pressure[k] = water_.bulk_modulus * (filled - 1);
-            water.mobility[k] = water.full_mobility[k];
-        } else {
+            fluids.pressure[k] = water_.bulk_modulus * (share_filled(p) - 1);
+            fluids.mobility[k] = fluids.full_mobility[k];
+        } else if constexpr (filling == Filling::unsaturated) {
+            const double filled = share_filled(p);
             const SaturationTable& table = tables_[soil];
             const SaturationTable::State state = table.at(filled);
             const double excess = std::max(filled / table.maximum() - 1, 0.0);
-            water.pressure[k] = state.pressure + water_.bulk_modulus * excess;
-            water.mobility[k] = water.full_mobility[k] * state.permeability;
-            water.suction[k] = -state.pressure;
-            water.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
+            fluids.pressure[k] = state.pressure + water_.bulk_modulus * excess;
+            fluids.mobility[k] = fluids.full_mobility[k] * state.permeability;
+            fluids.suction[k] = -state.pressure;
+            fluids.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
+        } else {
+            const SharedPores pores = shared_pores(p);
+            fluids.pressure[k] = pores.water_pressure;
+            fluids.mobility[k] = fluids.full_mobility[k] * pores.state.permeability;
+            fluids.suction[k] = pores.state.suction;
+            fluids.effective_saturation[k] = std::clamp(tables_[soil].effective(1 - pores.gas_share), 0.0, 1.0);
+            fluids.gas_pressure[k] = pores.gas_pressure;
+            fluids.gas_mobility[k] =
+                hydraulics_[soil].gas_mobility * std::max(pores.state.gas_permeability, least_gas_permeability);
+            fluids.gas_volume[k] = std::max(pores.gas_share, least_gas_share) * pores_of(p);
         }
     }
+    if constexpr (has_gas) find_potential(first, count, fluids);
+}
+
+/// psi, as of gas that is never thinner than next to none.
+template <Filling filling>
+void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidBlock& fluids) const {
+    const double specific = gas_.atmosphere / gas_.density;  // R T / M, J/kg
+    for (size_t k = 0; k < count; ++k) {
+        const double relative = std::max(1 + fluids.gas_pressure[k] / gas_.atmosphere, least_gas_pressure);
+        fluids.gas_potential[k] = specific * std::log(relative) + nodes_.gravity * points_[position_y][first + k];
+    }
+}
+
+template <Filling filling>
+SharedPores ExplicitMixture<filling>::shared_pores(size_t p) const {
+    const double alone = points_[gas_mass][p] * gas_.atmosphere / (gas_.density * pores_of(p));
+    return share_pores(tables_[static_cast<size_t>(points_.soil[p])], {water_.bulk_modulus, gas_.atmosphere},
+                       share_filled(p), std::max(alone, 0.0));
+}
+
+/// What flowed to the points in the last step.
+template <Filling filling>
+void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const SplineBlock& spline) {
+    BlockValues rate;
+    gather_value(nodes_.grid, nodes_.gas.rates, count, spline, rate);
+    for (size_t k = 0; k < count; ++k) {
+        const size_t p = first + k;
+        points_[gas_mass][p] += restarted_ ? points_[gas_due][p] : nodes_.flow_time * gas_weight(p) * rate[k];
+    }
+}
+
+/// What pushes the gas of the nodes.
+template <Filling filling>
+void ExplicitMixture<filling>::push_gas(size_t first, size_t count, const SplineBlock& spline,
+                                        const FluidBlock& fluids) {
+    GasGiftBlock gift;
+    for (size_t k = 0; k < count; ++k) {
+        const size_t p = first + k;
+        gift[k].push = points_[point_volume][p] * fluids.gas_potential[k];
+        gift[k].value[0] = fluids.gas_volume[k] * fluids.gas_potential[k];
+        gift[k].value[1] = points_[solid_mass][p] * fluids.gas_mobility[k];
+        gift[k].value[2] = fluids.gas_volume[k];
+        gift[k].value[3] = points_[gas_mass][p];
+    }
+    scatter_gas(nodes_.grid, count, spline, gift, nodes_.gas);
+}
+
+template <Filling filling>
+template <bool keeps>
+void ExplicitMixture<filling>::take_gas_velocity(size_t first, size_t count, const SplineBlock& spline,
+                                                 GiftBlock& gift) {
+    VelocityBlock taken;
+    BlockValues outflow;
+    gather_divergence(nodes_.grid, nodes_.gas.flux, count, spline, outflow);
+    take_velocity<keeps>(nodes_.grid, nodes_.gas.velocity, points_, first, count, spline, points_[gas_mass] + first,
+                         gas_velocity_x, gas_affine_xx, gift, taken);
+    for (size_t k = 0; k < count; ++k) gift[k].own[3] = -points_[point_volume][first + k] * outflow[k];
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::give_gas(size_t first, size_t count, const SplineBlock& spline, const GiftBlock& gift) {
+    BlockValues weight;
+    for (size_t k = 0; k < count; ++k) weight[k] = gas_weight(first + k);
+    give_momentum(nodes_.grid, count, spline, gift, nodes_.gas.momentum);
+    scatter_value(nodes_.grid, count, spline, weight, nodes_.gas.weight);
 }
 
 template <Filling filling>
@@ -183,7 +300,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
     GradientBlock gradient;
     VelocityBlock rates;
     MaterialBlock material;
-    WaterBlock water;
+    FluidBlock fluids;
     BlockValues total_xx, total_yy;
     LiquidGiftBlock gift;
     for (size_t first = strip.first; first < strip.last; first += block_size) {
@@ -192,6 +309,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
         gather_gradient(nodes_.grid, nodes_.velocity, count, spline, gradient);
         gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
+        if constexpr (has_gas) take_gas(first, count, spline);
         for (size_t k = 0; k < count; ++k) {
             const double due = restarted_ ? points_[water_due][first + k] : nodes_.flow_time * mass[k] * rates.y[k];
             points_[water_mass][first + k] += due;
@@ -199,16 +317,16 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         smooth_dilation(count, rates.x, gradient);
         set_elasticity(soils_, points_, first, count, material);
         strain_elastically(points_, first, count, dt, gradient, material);
-        find_water(first, count, water);
+        find_fluids(first, count, fluids);
         if (yields_) {
             set_strength(soils_, points_, first, count, nodes_.grid.cell_size, material);
-            if constexpr (filling == Filling::unsaturated)
-                add_apparent_cohesion(hydraulics_, points_, first, count, water.suction, water.effective_saturation,
+            if constexpr (filling != Filling::saturated)
+                add_apparent_cohesion(hydraulics_, points_, first, count, fluids.suction, fluids.effective_saturation,
                                       material);
             return_stresses(points_, first, count, material);
         }
         for (size_t k = 0; k < count; ++k) {
-            const double pore_stress = this->pore_stress(water, k);
+            const double pore_stress = this->pore_stress(fluids, k);
             total_xx[k] = points_[stress_xx][first + k] - pore_stress;
             total_yy[k] = points_[stress_yy][first + k] - pore_stress;
         }
@@ -216,10 +334,11 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         scatter_force(nodes_.grid, count, spline, volume, total_xx.data(), total_yy.data(), points_[stress_xy] + first,
                       nodes_.force);
         const double* y = points_[position_y] + first;
-        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, water.pressure, water.mobility,
-                   water.full_mobility, gift);
+        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, fluids.pressure, fluids.mobility,
+                   fluids.full_mobility, gift);
         scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
         scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
+        if constexpr (has_gas) push_gas(first, count, spline, fluids);
     }
 }
 
@@ -230,19 +349,21 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
     VelocityBlock taken, liquid_taken;
     BlockValues dilation, outflow;
     GiftBlock gift, liquid_gift;
+    [[maybe_unused]] GiftBlock gas_gift;
     for (size_t first = strip.first; first < strip.last; first += block_size) {
         const size_t count = std::min(block_size, strip.last - first);
         const Grid& grid = nodes_.grid;
         double* x = points_[position_x] + first;
         double* y = points_[position_y] + first;
         spline.find(grid, x, y, count);
-        if (filling == Filling::unsaturated) even_out(first, count, spline, dt);
+        if constexpr (filling != Filling::saturated) even_out(first, count, spline, dt);
         gather_divergence(grid, nodes_.velocity, count, spline, dilation);
         gather_divergence(grid, nodes_.flux, count, spline, outflow);
         take_velocity<keeps>(grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
                              velocity_x, affine_xx, gift, taken);
         take_velocity<keeps>(grid, nodes_.liquid_velocity, points_, first, count, spline, points_[water_mass] + first,
                              liquid_velocity_x, liquid_affine_xx, liquid_gift, liquid_taken);
+        if constexpr (has_gas) take_gas_velocity<keeps>(first, count, spline, gas_gift);
         for (size_t k = 0; k < count; ++k) {
             gift[k].own[3] = points_[solid_mass][first + k] * dilation[k];
             liquid_gift[k].own[3] = -points_[point_volume][first + k] * outflow[k];
@@ -252,6 +373,7 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         spline.find(grid, x, y, count);
         give_momentum(grid, count, spline, gift, nodes_.momentum);
         give_momentum(grid, count, spline, liquid_gift, nodes_.liquid_momentum);
+        if constexpr (has_gas) give_gas(first, count, spline, gas_gift);
     }
 }
 
@@ -277,19 +399,36 @@ void ExplicitMixture<filling>::give(Strip strip) {
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
         give_phase(first, count, solid_mass, velocity_x, affine_xx, 1, nodes_.momentum);
         give_phase(first, count, water_mass, liquid_velocity_x, liquid_affine_xx, 0, nodes_.liquid_momentum);
+        if constexpr (has_gas)
+            give_phase(first, count, gas_mass, gas_velocity_x, gas_affine_xx, 0, nodes_.gas.momentum);
     }
+}
+
+/// Nothing comes back from nodes that points have left.
+template <Filling filling>
+void ExplicitMixture<filling>::forget_left_nodes(std::vector<double>& returned) const {
+    std::vector<double> kept(returned.size(), 0.0);
+    nodes_.for_each_node([&](size_t i) { kept[i] = returned[i]; });
+    returned = std::move(kept);
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::move_gas_nodes(const Grid& old) {
+    NodeGas& gas = nodes_.gas;
+    for (auto* field : {&gas.velocity, &gas.flux, &gas.evening}) move_nodes(*field, old, nodes_.grid);
+    for (auto* field : {&gas.rates, &gas.returned}) move_nodes(*field, old, nodes_.grid);
 }
 
 template <Filling filling>
 void ExplicitMixture<filling>::arrange_points() {
     const Grid old = nodes_.grid;
-    std::vector<double> returned(nodes_.returned.size(), 0.0);  // none from nodes that points have left
-    nodes_.for_each_node([&](size_t i) { returned[i] = nodes_.returned[i]; });
-    nodes_.returned = std::move(returned);
+    forget_left_nodes(nodes_.returned);
+    if constexpr (has_gas) forget_left_nodes(nodes_.gas.returned);
     if (arrangement_.arrange(points_, nodes_.grid)) {
         for (auto* field : {&nodes_.velocity, &nodes_.liquid_velocity, &nodes_.flux, &nodes_.rates, &nodes_.evening})
             move_nodes(*field, old, nodes_.grid);
         move_nodes(nodes_.returned, old, nodes_.grid);
+        if constexpr (has_gas) move_gas_nodes(old);
         nodes_.resize();
     }
     nodes_.spans = arrangement_.spans();
@@ -317,7 +456,8 @@ void ExplicitMixture<filling>::fall_rain() {
     }
 }
 
-/// Of the points as they are: the square root of the sum of the two waves' squares without drag, which bounds both.
+/// Of the points as they are: the square root of the sum of the waves' squares without drag, which bounds each. The gas's own is R T / M at
+/// any pressure, and less where the water gives way.
 template <Filling filling>
 void ExplicitMixture<filling>::find_wave_speed() {
     wave_speed_ = 0;
@@ -327,7 +467,8 @@ void ExplicitMixture<filling>::find_wave_speed() {
         const double grains = solid_density / hydraulics_[soil].grain_density;
         const double frame = soils_[soil].elastic.lame + 2 * soils_[soil].elastic.shear;
         const double fluid = water_.bulk_modulus / (1 - grains);
-        const double squares = (frame + grains * grains * fluid) / solid_density + water_.bulk_modulus / water_.density;
+        double squares = (frame + grains * grains * fluid) / solid_density + water_.bulk_modulus / water_.density;
+        if constexpr (has_gas) squares += gas_.atmosphere / gas_.density;
         wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
     }
 }
@@ -345,37 +486,54 @@ Energies ExplicitMixture<filling>::energies() const {
         const double x = points_[liquid_velocity_x][p], y = points_[liquid_velocity_y][p];
         sum.kinetic += 0.5 * points_[water_mass][p] * (x * x + y * y);
         sum.potential += points_[water_mass][p] * nodes_.gravity * points_[position_y][p];
+        if constexpr (has_gas) {
+            const double gas_x = points_[gas_velocity_x][p], gas_y = points_[gas_velocity_y][p];
+            sum.kinetic += 0.5 * points_[gas_mass][p] * (gas_x * gas_x + gas_y * gas_y);
+            sum.potential += points_[gas_mass][p] * nodes_.gravity * points_[position_y][p];
+        }
     }
     return sum;
 }
 
 template <Filling filling>
 double ExplicitMixture<filling>::pressure(size_t point) const {
-    WaterBlock water;
-    find_water(point, 1, water);
-    return water.pressure[0];
+    FluidBlock fluids;
+    find_fluids(point, 1, fluids);
+    return fluids.pressure[0];
 }
 
 template <Filling filling>
-double ExplicitMixture<filling>::pore_stress(const WaterBlock& water, size_t k) const {
-    const double pressure = water.pressure[k];
+double ExplicitMixture<filling>::pore_stress(const FluidBlock& fluids, size_t k) const {
+    const double pressure = fluids.pressure[k];
+    if constexpr (has_gas) {
+        const double share = water_.pore_stress == PoreStress::bishop ? fluids.effective_saturation[k] : 0.0;
+        return share * pressure + (1 - share) * fluids.gas_pressure[k];
+    }
     if (filling == Filling::saturated || pressure > 0) return pressure;
-    return water_.pore_stress == PoreStress::bishop ? water.effective_saturation[k] * pressure : 0.0;
+    return water_.pore_stress == PoreStress::bishop ? fluids.effective_saturation[k] * pressure : 0.0;
 }
 
 template <Filling filling>
 double ExplicitMixture<filling>::pore_stress(size_t point) const {
-    WaterBlock water;
-    find_water(point, 1, water);
-    return pore_stress(water, 0);
+    FluidBlock fluids;
+    find_fluids(point, 1, fluids);
+    return pore_stress(fluids, 0);
+}
+
+template <Filling filling>
+double ExplicitMixture<filling>::gas_pressure(size_t point) const {
+    if constexpr (has_gas) return shared_pores(point).gas_pressure;
+    return 0;
 }
 
 template <Filling filling>
 double ExplicitMixture<filling>::saturation(size_t point) const {
+    if constexpr (has_gas) return 1 - shared_pores(point).gas_share;
     return std::min(share_filled(point), 1.0);
 }
 
 template class ExplicitMixture<Filling::saturated>;
 template class ExplicitMixture<Filling::unsaturated>;
+template class ExplicitMixture<Filling::three_phase>;
 
 }  // namespace talus

@@ -1,11 +1,12 @@
-// Explicit motion of material points that hold water: solid and liquid have velocities of their own (physics.md, Eqs 2 to 4 with the
-// gas at rest). The solid as in explicit_motion.hpp; see grid_mixture.hpp for what passes between points and nodes.
+// Explicit motion of material points that hold water, or water and gas: solid, liquid and gas have velocities of their own (physics.md,
+// Eqs 2 to 4), or the gas is at rest. The solid as in explicit_motion.hpp; see grid_mixture.hpp for what passes between points and nodes.
 //
-// A point's water is its mass; the pressure follows from it, from the pores' volume and from the soil's retention. The volumetric strain of
+// A point's fluids are their masses; the pressures follow from them, from the pores' volume and from the soil's retention. The volumetric strain of
 // the points is a mean over the nodes' surroundings, so that nearly incompressible water does not lock the ground.
 #pragma once
 
 #include "materials/hydraulic/saturation_table.hpp"
+#include "materials/hydraulic/shared_pores.hpp"
 #include "motion/explicit/arrangement.hpp"
 #include "motion/explicit/explicit_motion.hpp"
 #include "motion/explicit/grid_mixture.hpp"
@@ -13,6 +14,7 @@
 #include "motion/explicit/transfer.hpp"
 #include "points/free_points.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -26,9 +28,10 @@ struct ExplicitHydraulics {
     double suction_tangent =
         0;  ///< cohesion gained per suction, -, times the effective saturation where `weighs_suction`
     bool weighs_suction = false;
+    double gas_mobility = 0;  ///< of the dry soil, kappa / mu_g, m2/(Pa s); three phases only
 };
 
-/// What of the pore pressure the skeleton does not bear: max(p, 0), or S_e p (physics.md).
+/// What of the pore pressures the skeleton does not bear: max(p_l, p_g), or S_e p_l + (1 - S_e) p_g (physics.md).
 enum class PoreStress { net, bishop };
 
 struct ExplicitWater {
@@ -37,22 +40,31 @@ struct ExplicitWater {
     PoreStress pore_stress = PoreStress::net;
 };
 
-/// Saturated: every pore is full of water at all times. Unsaturated: the gas is at rest at zero pressure.
-enum class Filling { saturated, unsaturated };
+/// Ideal and isothermal. The defaults: air at 20 degrees.
+struct ExplicitGas {
+    double density = 1.2041;     ///< at the atmosphere's pressure, kg/m3
+    double atmosphere = 101325;  ///< Pa, absolute
+};
+
+/// Saturated: every pore is full of water at all times. Unsaturated: the gas is at rest at zero pressure. Three phases: it moves.
+enum class Filling { saturated, unsaturated, three_phase };
+
+/// Of the pores: no point counts less than this as room for gas.
+inline constexpr double least_gas_share = 1e-6;
 
 template <Filling filling>
 class ExplicitMixture {
 public:
-    /// The points' fields up to liquid_affine_yy must be sized. `tables`: one a soil, none where saturated.
+    /// The points' fields up to liquid_affine_yy must be sized, with three phases all. `tables`: one a soil, none where saturated.
     ExplicitMixture(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
                     std::vector<ExplicitHydraulics> hydraulics, std::vector<SaturationTable> tables,
-                    const ExplicitWater& water, FreePoints points, int32_t threads);
+                    const ExplicitWater& water, FreePoints points, int32_t threads, const ExplicitGas& gas = {});
 
     /// As ExplicitMotion's. The water of the ground is the points' own and what is due to them.
     bool step(double dt, bool is_last);
     void restart();  ///< as ExplicitMotion's; what rained and seeped is counted from here on
     [[nodiscard]] double critical_step() const;
-    [[nodiscard]] Energies energies() const;  ///< of both phases; elastic: the skeleton's
+    [[nodiscard]] Energies energies() const;  ///< of all phases; elastic: the skeleton's
 
     void set_edge_pressure(double pressure) { nodes_.edge_pressure = pressure; }  ///< Pa
     /// Rain from now on: a volume per horizontal area, m/s, at each x (m).
@@ -62,8 +74,11 @@ public:
     void set_immersed(bool immersed) { nodes_.immersed = immersed; }
     [[nodiscard]] double seepage() const { return nodes_.seepage; }  ///< kg
 
-    /// Pore pressure of a point, Pa.
+    [[nodiscard]] double gas_escaped() const { return nodes_.gas.escaped; }  ///< kg, since restart()
+
+    /// Pressure of a point's water, Pa.
     [[nodiscard]] double pressure(size_t point) const;
+    [[nodiscard]] double gas_pressure(size_t point) const;  ///< Pa; 0: at rest
     [[nodiscard]] double saturation(size_t point) const;
     /// What the points' stress is short of the total one, Pa.
     [[nodiscard]] double pore_stress(size_t point) const;
@@ -73,23 +88,42 @@ public:
     [[nodiscard]] const Grid& grid() const { return nodes_.grid; }
 
 private:
-    struct WaterBlock {
-        BlockValues pressure, mobility, full_mobility, suction, effective_saturation;
+    static constexpr bool has_gas = filling == Filling::three_phase;
+
+    struct FluidBlock {
+        BlockValues pressure, mobility, full_mobility, suction, effective_saturation;  // of the water
+        BlockValues gas_pressure, gas_potential, gas_mobility, gas_volume;             // where it moves
     };
 
     void arrange_points();
+    [[nodiscard]] double pores_of(size_t p) const {
+        const double grain_density = hydraulics_[static_cast<size_t>(points_.soil[p])].grain_density;
+        return points_[point_volume][p] - points_[solid_mass][p] / grain_density;
+    }
     /// Of the pores, by the point's water; above 1 it is pressed together.
     [[nodiscard]] double share_filled(size_t p) const {
-        const double grain_density = hydraulics_[static_cast<size_t>(points_.soil[p])].grain_density;
-        const double pores = points_[point_volume][p] - points_[solid_mass][p] / grain_density;
-        return points_[water_mass][p] / (water_.density * pores);
+        return points_[water_mass][p] / (water_.density * pores_of(p));
     }
-    [[nodiscard]] double pore_stress(const WaterBlock& water, size_t k) const;
+    /// What a point shares gas by: the volume that water without pressure leaves to it, m2.
+    [[nodiscard]] double gas_weight(size_t p) const {
+        const double pores = pores_of(p);
+        return std::max(pores - points_[water_mass][p] / water_.density, least_gas_share * pores);
+    }
+    [[nodiscard]] SharedPores shared_pores(size_t p) const;
+    [[nodiscard]] double pore_stress(const FluidBlock& fluids, size_t k) const;
     void find_wave_speed();
     void fall_rain();
     void even_out(size_t first, size_t count, const SplineBlock& spline, double dt);
     void owe_water(Strip strip);
-    void find_water(size_t first, size_t count, WaterBlock& water) const;
+    void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
+    void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
+    void take_gas(size_t first, size_t count, const SplineBlock& spline);
+    void push_gas(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
+    template <bool keeps>
+    void take_gas_velocity(size_t first, size_t count, const SplineBlock& spline, GiftBlock& gift);
+    void give_gas(size_t first, size_t count, const SplineBlock& spline, const GiftBlock& gift);
+    void forget_left_nodes(std::vector<double>& returned) const;
+    void move_gas_nodes(const Grid& old);
     void stress_and_forces(Strip strip, double dt);
     template <bool keeps>
     void move_and_give(Strip strip, double dt);
@@ -100,7 +134,8 @@ private:
     std::vector<SaturationTable> tables_;
     ExplicitWater water_;
     FreePoints points_;
-    GridMixture nodes_;
+    ExplicitGas gas_;
+    GridMixture<has_gas> nodes_;
     Arrangement arrangement_;
     bool restarted_ = false;  // and the points not yet got what is due
     bool yields_ = false;     // any soil
@@ -110,5 +145,6 @@ private:
 
 extern template class ExplicitMixture<Filling::saturated>;
 extern template class ExplicitMixture<Filling::unsaturated>;
+extern template class ExplicitMixture<Filling::three_phase>;
 
 }  // namespace talus

@@ -1,7 +1,5 @@
 #include "motion/explicit/grid_mixture.hpp"
 
-#include "motion/explicit/ground_edge.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,11 +12,33 @@ constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is
 /// it would grow by chance from step to step, until the pressure of the fuller one counts (docs/verification.md).
 constexpr double evening_share = 0.5;
 
+/// Gas is never thinner than this share of the atmosphere where a density is divided by.
+constexpr double least_density_share = 1e-6;
+
 double dot(const NodeVector& a, const NodeVector& b) { return a.x * b.x + a.y * b.y; }
 
 }  // namespace
 
-void GridMixture::resize() {
+void NodeGas::clear_flow(size_t node) {
+    flux[node] = {};
+    returned[node] = 0;
+    evening[node] = {};
+}
+
+void NodeGas::resize(size_t nodes) {
+    momentum.assign(nodes, {});
+    weight.assign(nodes, 0.0);
+    push.assign(nodes, {});
+    means.assign(nodes, {});
+    velocity.resize(nodes);
+    flux.resize(nodes);
+    returned.resize(nodes);
+    rates.resize(nodes);
+    evening.resize(nodes);
+}
+
+template <bool has_gas>
+void GridMixture<has_gas>::resize() {
     const size_t nodes = grid.nodes();
     momentum.assign(nodes, {});
     liquid_momentum.assign(nodes, {});
@@ -32,13 +52,20 @@ void GridMixture::resize() {
     liquid_velocity.resize(nodes);
     flux.resize(nodes);
     rates.resize(nodes);
+    if constexpr (has_gas) gas.resize(nodes);
 }
 
-void GridMixture::begin_step() {
+template <bool has_gas>
+void GridMixture<has_gas>::begin_step() {
     for_each_node([this](size_t i) {
         force[i] = {0, -gravity * (momentum[i].mass + liquid_momentum[i].mass)};
         gradients[i] = {};
         means[i] = {};
+        if constexpr (has_gas) {
+            force[i].y -= gravity * gas.momentum[i].mass;
+            gas.push[i] = {};
+            gas.means[i] = {};
+        }
     });
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
         move_inside(momentum[nodes.inside], momentum[nodes.beyond], mirror);
@@ -47,6 +74,11 @@ void GridMixture::begin_step() {
     });
     for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
         move_inside(liquid_momentum[nodes.inside], liquid_momentum[nodes.beyond], mirror);
+        if constexpr (has_gas) {
+            move_inside(gas.momentum[nodes.inside], gas.momentum[nodes.beyond], mirror);
+            gas.weight[nodes.inside] += gas.weight[nodes.beyond];
+            gas.weight[nodes.beyond] = 0;
+        }
     });
     for_each_node([this](size_t i) {
         const NodeMomentum &solid = momentum[i], &liquid = liquid_momentum[i];
@@ -55,11 +87,18 @@ void GridMixture::begin_step() {
         liquid_velocity[i] = velocity[i];
         if (liquid.mass > 0) liquid_velocity[i] = {liquid.x / liquid.mass, liquid.y / liquid.mass};
         rates[i] = {solid.more * inverse, (liquid.more + returned[i]) * inverse};
+        if constexpr (has_gas) {
+            const NodeMomentum& own = gas.momentum[i];
+            gas.velocity[i] = velocity[i];
+            if (own.mass > 0) gas.velocity[i] = {own.x / own.mass, own.y / own.mass};
+            gas.rates[i] = gas.weight[i] > 0 ? (own.more + gas.returned[i]) / gas.weight[i] : 0;
+        }
     });
     mirror();
 }
 
-void GridMixture::end_step(double dt) {
+template <bool has_gas>
+void GridMixture<has_gas>::end_step(double dt) {
     fold_forces();
     for_each_node([this, dt](size_t i) { solve(i, dt); });
     if (!immersed) cross_surface(dt);
@@ -69,10 +108,15 @@ void GridMixture::end_step(double dt) {
     for_each_node([this](size_t i) {
         momentum[i] = {};
         liquid_momentum[i] = {};
+        if constexpr (has_gas) {
+            gas.momentum[i] = {};
+            gas.weight[i] = 0;
+        }
     });
 }
 
-void GridMixture::fold_forces() {
+template <bool has_gas>
+void GridMixture<has_gas>::fold_forces() {
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
         add_mirrored(force[nodes.inside], mirror, force[nodes.beyond]);
     });
@@ -89,20 +133,33 @@ void GridMixture::fold_forces() {
         mean_in.full_mobility += mean_out.full_mobility;
         mean_in.volume += mean_out.volume;
         mean_out = {};
+        if constexpr (has_gas) {
+            add_mirrored(gas.push[nodes.inside], mirror, gas.push[nodes.beyond]);
+            gas.push[nodes.beyond] = {};
+            GasMeans &gas_in = gas.means[nodes.inside], &gas_out = gas.means[nodes.beyond];
+            gas_in.push += gas_out.push;
+            gas_in.mobility += gas_out.mobility;
+            gas_in.volume += gas_out.volume;
+            gas_in.mass += gas_out.mass;
+            gas_out = {};
+        }
     });
 }
 
-bool GridMixture::is_at_edge(size_t node) const {
+template <bool has_gas>
+bool GridMixture<has_gas>::is_at_edge(size_t node) const {
     return means[node].volume > 0 && means[node].volume < full_share * cell_volume();
 }
 
-double GridMixture::facing_up(size_t node) const {
+template <bool has_gas>
+double GridMixture<has_gas>::facing_up(size_t node) const {
     return is_at_edge(node) ? std::max(gradients[node].edge_y, 0.0) : 0.0;
 }
 
 /// Every column's rain falls on its nodes at the edge in proportion to the edge's horizontal width there. What one of them cannot take, or
 /// gives back, is offered to the others. What none takes leaves: within the column's own rain it is run-off, the rest seepage.
-void GridMixture::cross_surface(double dt) {
+template <bool has_gas>
+void GridMixture<has_gas>::cross_surface(double dt) {
     const auto columns = static_cast<size_t>(grid.cells[0]);
     surfaces_.assign(columns, {});
     for_each_node([&](size_t i) { surfaces_[i % columns].width += facing_up(i); });
@@ -136,7 +193,26 @@ void GridMixture::cross_surface(double dt) {
     }
 }
 
-void GridMixture::solve(size_t node, double dt) {
+/// How the gas at a node answers to forces.
+template <bool has_gas>
+GasAnswer GridMixture<has_gas>::answer_of_gas(size_t node, double dt) {
+    const double volume = means[node].volume, mass = gas.momentum[node].mass;
+    const GasMeans& mean = gas.means[node];
+    GasAnswer answer;
+    if (!(mass > 0)) return answer;
+    const double density = std::max(mean.mass / mean.volume, least_density_share * gas.density);
+    answer.push = mean.push / mean.volume;
+    answer.drag = dt * mean.volume / volume * momentum[node].mass / (mean.mobility * density);
+    answer.response = dt / volume;
+    answer.moved = mass / (1 + answer.drag);
+    answer.conductance = answer.response * answer.moved;
+    const double spread = evening_share * answer.conductance * volume / (cell_volume() * mean.volume);
+    gas.evening[node] = {spread, spread * answer.push};
+    return answer;
+}
+
+template <bool has_gas>
+void GridMixture<has_gas>::solve(size_t node, double dt) {
     const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
     const NodeGradients& sums = gradients[node];
     const NodeMeans& mean = means[node];
@@ -144,6 +220,7 @@ void GridMixture::solve(size_t node, double dt) {
     returned[node] = 0;
     capacity[node] = 0;
     evening[node] = {};
+    if constexpr (has_gas) gas.clear_flow(node);
     if (!(mass > 0) || !(mean.volume > 0)) return;
     const double push = mean.push / mass;
     const double liquid_content = liquid_mass / (liquid_density * mean.volume);
@@ -153,46 +230,84 @@ void GridMixture::solve(size_t node, double dt) {
     const double spread = evening_share * conductance * mean.volume / (cell_volume() * mass);
     evening[node] = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
-    const double moved = liquid_mass / (1 + drag), coupled = mass + moved * drag;
+    const double moved = liquid_mass / (1 + drag);
+    double coupled = mass + moved * drag;
+    [[maybe_unused]] GasAnswer answer;
+    if constexpr (has_gas) {
+        answer = answer_of_gas(node, dt);
+        coupled += answer.moved * answer.drag;
+    }
     NodeVector &solid = velocity[node], &liquid = liquid_velocity[node];
-    const auto move = [&](double NodeVector::*c, double pushed, double normal) {
+    const NodeVector outwards{sums.edge_x, sums.edge_y};
+    const auto move = [&](double NodeVector::*c, const NodeVector& pushed, const NodeVector& gas_pushed) {
         const double start = solid.*c, liquid_start = liquid.*c;
-        const double alone = liquid_start + response * pushed;
-        const double whole = mass * start + liquid_mass * liquid_start + dt * (force[node].*c - edge_pressure * normal);
+        const double alone = liquid_start + response * pushed.*c;
+        double whole = mass * start + liquid_mass * liquid_start + dt * (force[node].*c - edge_pressure * outwards.*c);
+        [[maybe_unused]] double gas_alone = 0;
+        if constexpr (has_gas) {
+            gas_alone = gas.velocity[node].*c + answer.response * gas_pushed.*c;
+            whole += gas.momentum[node].mass * gas.velocity[node].*c - answer.moved * gas_alone;
+        }
         solid.*c = (whole - moved * alone) / coupled;
         liquid.*c = (alone + drag * solid.*c) / (1 + drag);
         flux[node].*c = liquid_mass / mean.volume * (liquid.*c - solid.*c);
+        if constexpr (has_gas) {
+            gas.velocity[node].*c = (gas_alone + answer.drag * solid.*c) / (1 + answer.drag);
+            gas.flux[node].*c = gas.momentum[node].mass / mean.volume * (gas.velocity[node].*c - solid.*c);
+        }
     };
-    const NodeVector outwards{sums.edge_x, sums.edge_y};
-    const auto flow = [&](const NodeVector& pushed) {
-        move(&NodeVector::x, pushed.x, outwards.x);
-        move(&NodeVector::y, pushed.y, outwards.y);
+    const auto flow = [&](const NodeVector& pushed, const NodeVector& gas_pushed) {
+        move(&NodeVector::x, pushed, gas_pushed);
+        move(&NodeVector::y, pushed, gas_pushed);
     };
     const NodeVector inner{sums.push_x - push * outwards.x, sums.push_y - push * outwards.y};
+    NodeVector gas_inner{};
+    if constexpr (has_gas)
+        gas_inner = {gas.push[node].x - answer.push * outwards.x, gas.push[node].y - answer.push * outwards.y};
     if (!is_at_edge(node)) {
-        flow(inner);
+        flow(inner, gas_inner);
         returned[node] = dot(flux[node], outwards);
+        if constexpr (has_gas) gas.returned[node] = dot(gas.flux[node], outwards);
         return;
     }
     const GroundEdge edge(outwards, mean.volume / cell_volume(), grid.cell_size);
     const double edge_head = gravity * liquid_density * (height_of(node) + edge.height);
     if (immersed) {
-        flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y});
+        flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y}, {});
         seepage += dt * dot(flux[node], outwards);
         return;
     }
-    const NodeVector pushed = edge.stretched(inner);
-    flow(pushed);
+    const NodeVector pushed = edge.stretched(inner), gas_pushed = edge.stretched(gas_inner);
+    flow(pushed, gas_pushed);
     flux[node] = edge.stretched(flux[node]);
     returned[node] = dot(flux[node], outwards);
+    if constexpr (has_gas) {
+        gas.flux[node] = edge.stretched(gas.flux[node]);
+        gas.returned[node] = dot(gas.flux[node], outwards);
+    }
     if (!(edge.distance > 0)) return;
     const double carried = returned[node] - conductance / mean.volume * dot(edge.stretched(pushed), outwards);
     const double drawn = conductance_of(mean.full_mobility) * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
+    if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed);
+}
+
+/// The atmosphere draws gas in or out by the difference of psi over the distance to the edge, besides what the gas's momentum carries.
+template <bool has_gas>
+void GridMixture<has_gas>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
+                                   const NodeVector& pushed) {
+    const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
+    const double driven = answer.conductance / means[node].volume * dot(edge.stretched(pushed), outwards);
+    const double edge_push = gravity * (height_of(node) + edge.height);
+    const double drawn = answer.conductance * edge.length * (edge_push - answer.push) / edge.distance;
+    const double inflow = drawn - (gas.returned[node] - driven);
+    gas.returned[node] += inflow;
+    gas.escaped -= dt * inflow;
 }
 
 /// Beyond a wall the nodes move as the mirrored ground would; water slides along every wall.
-void GridMixture::mirror() {
+template <bool has_gas>
+void GridMixture<has_gas>::mirror() {
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
         velocity[nodes.beyond] = {mirror.x * velocity[nodes.inside].x, mirror.y * velocity[nodes.inside].y};
     });
@@ -201,7 +316,16 @@ void GridMixture::mirror() {
             (*field)[nodes.beyond] = {mirror.x * (*field)[nodes.inside].x, mirror.y * (*field)[nodes.inside].y};
         rates[nodes.beyond] = rates[nodes.inside];
         evening[nodes.beyond] = evening[nodes.inside];
+        if constexpr (has_gas) {
+            for (auto* field : {&gas.velocity, &gas.flux})
+                (*field)[nodes.beyond] = {mirror.x * (*field)[nodes.inside].x, mirror.y * (*field)[nodes.inside].y};
+            gas.rates[nodes.beyond] = gas.rates[nodes.inside];
+            gas.evening[nodes.beyond] = gas.evening[nodes.inside];
+        }
     });
 }
+
+template struct GridMixture<false>;
+template struct GridMixture<true>;
 
 }  // namespace talus

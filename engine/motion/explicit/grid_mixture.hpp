@@ -1,17 +1,23 @@
-// What the nodes of the Cartesian background hold of solid and liquid, and their equations of motion with implicit drag.
+// What the nodes of the Cartesian background hold of solid, liquid and gas, and their equations of motion with implicit drag.
 //
 // Per node, with f the force of the liquid's pressure, f_m that of the total stress, b gravity:
 //     rho_l V (v_l' - v_l) / dt = f + rho_l V b - (n_l / lambda) V (v_l' - v_s')                    (Darcy's law with inertia)
 //     m_s (v_s' - v_s) / dt + m_l (v_l' - v_l) / dt = f_m + (m_s + m_l) b
+// A gas that moves has the like, in terms of its potential psi = R T / M ln(P / P_0) + g y, which is uniform where it is at rest:
+//     V (v_g' - v_g) / dt = f_psi - (n_g / (lambda_g rho_g)) V (v_g' - v_s')
+// and its momentum counts in the second line.
 //
 // Pressure force and storage are each other's adjoint, and no water is lost between them. With the liquid's weight in it, the pressure
 // p + rho_l g y of the points pushes the nodes with sum V (p + rho_l g y - its mean at node j) grad N_j: no force on water at rest, no flow
 // through the edge of the ground. The flux F leaves a node's surroundings with sum V N_j div F - F_j . e_j, e_j = sum V grad N_j, which adds
 // up to zero over all nodes; points get their shares of it by N_j and their solid mass. Through the edge goes what the difference to p = 0
-// there drives over the distance to the middle of the ground at the node, into full pores and at most what rain offers, or out.
+// there drives over the distance to the middle of the ground at the node, into full pores and at most what rain offers, or out. The gas alike,
+// with psi in place of the whole pressure, but points get their shares of it by N_j and their gas's volume: its density changes alike in
+// all of them, however little of it some hold. The edge is open to it both ways.
 #pragma once
 
 #include "motion/explicit/grid_motion.hpp"
+#include "motion/explicit/ground_edge.hpp"
 #include "motion/explicit/walled_grid.hpp"
 
 #include <vector>
@@ -32,6 +38,41 @@ struct NodeMeans {
     double full_mobility = 0;  ///< of N m lambda, were all pores full
 };
 
+/// Sums over points of what concerns their gas.
+struct GasMeans {
+    double push = 0;      ///< of N V_g psi
+    double mobility = 0;  ///< of N m lambda_g
+    double volume = 0;    ///< of N V_g
+    double mass = 0;      ///< of N m_g
+};
+
+/// What nodes hold of a gas that moves.
+struct NodeGas {
+    std::vector<NodeMomentum> momentum;  ///< more: less the sum of V N div F, kg/s
+    std::vector<double> weight;          ///< sum of N times what points share their gas by, m2
+    std::vector<NodeVector> velocity;    ///< m/s
+    std::vector<NodeVector> flux;        ///< F, of gas through the solid, kg/(m2 s)
+    std::vector<NodeVector> push;        ///< sum of V psi grad N
+    std::vector<GasMeans> means;         ///< of the points
+    std::vector<double> returned;        ///< F_j . e_j and what crosses the surface, kg/s
+    std::vector<double> rates;           ///< that points share: gas gained, kg/s per weight
+    std::vector<NodeVector> evening;     ///< of the points' psi: x, kg/s per weight and J/kg; y, times the node's
+    double density = 0;                  ///< at no gauge pressure, kg/m3
+    double escaped = 0;                  ///< through the surface in the steps ended, kg
+
+    void resize(size_t nodes);
+    void clear_flow(size_t node);
+};
+
+/// How the gas at a node answers to forces on it: v_g' = (v_g + response force + drag v_s') / (1 + drag).
+struct GasAnswer {
+    double push = 0;         ///< the node's mean of psi, J/kg
+    double response = 0;     ///< m/s per force
+    double drag = 0;         ///< -
+    double moved = 0;        ///< mass / (1 + drag), kg
+    double conductance = 0;  ///< flux per gradient of psi
+};
+
 /// Of a column of the grid: the edge that faces up.
 struct OpenSurface {
     double width = 0;   ///< m
@@ -40,6 +81,7 @@ struct OpenSurface {
     double room = 0;    ///< in nodes that could take more, kg/s
 };
 
+template <bool has_gas>
 struct GridMixture : WalledGrid {
     double gravity = 0;         ///< m/s2, downwards
     double liquid_density = 0;  ///< kg/m3
@@ -70,6 +112,8 @@ struct GridMixture : WalledGrid {
     double run_off = 0;            ///< kg, likewise
     double seepage = 0;            ///< kg, likewise; negative where an immersed ground drank
 
+    NodeGas gas;  ///< empty where it is at rest
+
     void resize();
     void begin_step();
     void end_step(double dt);
@@ -80,10 +124,15 @@ private:
     void fold_forces();
     [[nodiscard]] double facing_up(size_t node) const;
     void cross_surface(double dt);
+    [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
     void solve(size_t node, double dt);
+    void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed);
     void mirror();
 
     std::vector<OpenSurface> surfaces_;  // one a column
 };
+
+extern template struct GridMixture<false>;
+extern template struct GridMixture<true>;
 
 }  // namespace talus

@@ -16,6 +16,7 @@
 
 namespace talus {
 
+using Single = Eigen::Array<double, 1, 1>;
 using Pair = Eigen::Array2d;
 using Quad = Eigen::Array4d;
 
@@ -137,6 +138,31 @@ inline void gather_values(const Grid& grid, const std::vector<NodeVector>& field
                     spline.value_x[2][k] * patch.node[j][2]);
         value.x[k] = sum[0];
         value.y[k] = sum[1];
+    }
+}
+
+/// The same of a single number.
+inline void gather_value(const Grid& grid, const std::vector<double>& field, size_t count, const SplineBlock& spline,
+                         BlockValues& value) {
+    NodePatch<Single, false> patch(field.data(), grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        double sum = 0;
+        for (size_t j = 0; j < 3; ++j)
+            for (size_t i = 0; i < 3; ++i) sum += spline.value_y[j][k] * spline.value_x[i][k] * patch.node[j][i][0];
+        value[k] = sum;
+    }
+}
+
+/// A number of the points, to the nodes' sums.
+inline void scatter_value(const Grid& grid, size_t count, const SplineBlock& spline, const BlockValues& value,
+                          std::vector<double>& field) {
+    NodePatch<Single, true> patch(field.data(), grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        for (size_t j = 0; j < 3; ++j)
+            for (size_t i = 0; i < 3; ++i)
+                patch.node[j][i][0] += spline.value_y[j][k] * value[k] * spline.value_x[i][k];
     }
 }
 

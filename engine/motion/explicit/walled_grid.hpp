@@ -16,12 +16,12 @@ enum class WallKind { none, roller, fixed, friction };
 /// A plane that holds the ground, along an axis of the grid and as long as the grid.
 struct Wall {
     WallKind kind = WallKind::none;
-    double place = 0;     ///< x of a left or right wall, y of the base, m
+    double place = 0;     ///< x of a left or right wall, y of the base or the top, m
     double friction = 0;  ///< tangent of the friction angle
 };
 
 struct Walls {
-    Wall left, right, base;
+    Wall left, right, base, top{};
 };
 
 /// The columns of a row that points may reach; none where first = last.
@@ -90,7 +90,7 @@ void WalledGrid::for_each_pair(const Wall& wall, size_t axis, int32_t inwards, c
     if (axis == 1) {
         for (auto column = static_cast<size_t>(spans[inside].first); column < static_cast<size_t>(spans[inside].last);
              ++column)
-            use(NodePair{inside * stride + column, (inside - 1) * stride + column});
+            use(NodePair{inside * stride + column, (inwards > 0 ? inside - 1 : inside + 1) * stride + column});
         return;
     }
     for (size_t row = 0; row < spans.size(); ++row) {
@@ -105,6 +105,7 @@ void WalledGrid::for_each_wall(const Use& use) const {
     use(walls.left, size_t{0}, 1);
     use(walls.right, size_t{0}, -1);
     use(walls.base, size_t{1}, 1);
+    use(walls.top, size_t{1}, -1);
 }
 
 template <class Use>
