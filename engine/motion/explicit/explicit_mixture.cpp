@@ -30,14 +30,14 @@ constexpr double least_gas_pressure = 1e-6;
 constexpr double least_gas_permeability = 1e-9;  // where no gas is left, so that nodes may divide by it
 
 /// What a point adds to the nodes' sums: with the splines' slope along x and along y, and with their value.
-struct LiquidGift {
+struct FluidGift {
     Quad along_x = Quad::Zero(), along_y = Quad::Zero(), value = Quad::Zero();
 };
-using LiquidGiftBlock = std::array<LiquidGift, block_size>;
+using FluidGiftBlock = std::array<FluidGift, block_size>;
 
 void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
                 const BlockValues& pressure, const BlockValues& mobility, const BlockValues& full_mobility,
-                LiquidGiftBlock& gift) {
+                FluidGiftBlock& gift) {
     for (size_t k = 0; k < count; ++k) {
         const double whole = pressure[k] + unit_weight * y[k];
         const double push = volume[k] * whole;
@@ -50,7 +50,7 @@ void fill_gifts(size_t count, const double* y, const double* volume, const doubl
     }
 }
 
-void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline, const LiquidGiftBlock& gift,
+void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline, const FluidGiftBlock& gift,
                        std::vector<NodeGradients>& gradients) {
     NodePatch<Quad, true> patch(&gradients.data()->push_x, grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
@@ -64,32 +64,9 @@ void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline
     }
 }
 
-/// Likewise of its gas.
-struct GasGift {
-    Quad value = Quad::Zero();
-    double push = 0;
-};
-using GasGiftBlock = std::array<GasGift, block_size>;
-
-void scatter_gas(const Grid& grid, size_t count, const SplineBlock& spline, const GasGiftBlock& gift, NodeGas& gas) {
-    NodePatch<Quad, true> means(&gas.means.data()->push, grid, spline.first[0]);
-    NodePatch<Pair, true> push(&gas.push.data()->x, grid, spline.first[0]);
-    for (size_t k = 0; k < count; ++k) {
-        means.move_to(spline.first[k]);
-        push.move_to(spline.first[k]);
-        for (size_t j = 0; j < 3; ++j) {
-            const Quad row = spline.value_y[j][k] * gift[k].value;
-            const Pair along = gift[k].push * Pair(spline.value_y[j][k], spline.slope_y[j][k]);
-            for (size_t i = 0; i < 3; ++i) {
-                means.node[j][i] += spline.value_x[i][k] * row;
-                push.node[j][i] += along * Pair(spline.slope_x[i][k], spline.value_x[i][k]);
-            }
-        }
-    }
-}
-
-void scatter_means(const Grid& grid, size_t count, const SplineBlock& spline, const LiquidGiftBlock& gift,
-                   std::vector<NodeMeans>& means) {
+template <class Means>
+void scatter_means(const Grid& grid, size_t count, const SplineBlock& spline, const FluidGiftBlock& gift,
+                   std::vector<Means>& means) {
     NodePatch<Quad, true> patch(&means.data()->push, grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
@@ -158,10 +135,10 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     return true;
 }
 
-/// Points pass water and gas on to others around the same nodes, until all have the nodes' head.
+/// Points pass water and gas on to others around the same nodes, until all have the nodes' head. `fluids` is as before.
 template <Filling filling>
-void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt) {
-    FluidBlock fluids;
+void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt,
+                                        FluidBlock& fluids) {
     VelocityBlock evening;
     find_fluids(first, count, fluids);
     gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
@@ -224,7 +201,7 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
             fluids.gas_pressure[k] = pores.gas_pressure;
             fluids.gas_mobility[k] =
                 hydraulics_[soil].gas_mobility * std::max(pores.state.gas_permeability, least_gas_permeability);
-            fluids.gas_volume[k] = std::max(pores.gas_share, least_gas_share) * pores_of(p);
+            fluids.gas_volume[k] = pores.gas_share * pores_of(p);
         }
     }
     if constexpr (has_gas) find_potential(first, count, fluids);
@@ -262,28 +239,28 @@ void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const Spline
 template <Filling filling>
 void ExplicitMixture<filling>::push_gas(size_t first, size_t count, const SplineBlock& spline,
                                         const FluidBlock& fluids) {
-    GasGiftBlock gift;
+    FluidGiftBlock gift;
     for (size_t k = 0; k < count; ++k) {
-        const size_t p = first + k;
-        gift[k].push = points_[point_volume][p] * fluids.gas_potential[k];
-        gift[k].value[0] = fluids.gas_volume[k] * fluids.gas_potential[k];
-        gift[k].value[1] = points_[solid_mass][p] * fluids.gas_mobility[k];
-        gift[k].value[2] = fluids.gas_volume[k];
-        gift[k].value[3] = points_[gas_mass][p];
+        const double volume = fluids.gas_volume[k], push = volume * fluids.gas_potential[k];
+        gift[k].along_x[0] = gift[k].along_y[1] = gift[k].value[0] = push;
+        gift[k].along_x[2] = gift[k].along_y[3] = gift[k].value[2] = volume;
+        gift[k].value[1] = points_[solid_mass][first + k] * fluids.gas_mobility[k];
+        gift[k].value[3] = points_[gas_mass][first + k];
     }
-    scatter_gas(nodes_.grid, count, spline, gift, nodes_.gas);
+    scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gas.gradients);
+    scatter_means(nodes_.grid, count, spline, gift, nodes_.gas.means);
 }
 
 template <Filling filling>
 template <bool keeps>
 void ExplicitMixture<filling>::take_gas_velocity(size_t first, size_t count, const SplineBlock& spline,
-                                                 GiftBlock& gift) {
+                                                 const BlockValues& volume, GiftBlock& gift) {
     VelocityBlock taken;
     BlockValues outflow;
     gather_divergence(nodes_.grid, nodes_.gas.flux, count, spline, outflow);
     take_velocity<keeps>(nodes_.grid, nodes_.gas.velocity, points_, first, count, spline, points_[gas_mass] + first,
                          gas_velocity_x, gas_affine_xx, gift, taken);
-    for (size_t k = 0; k < count; ++k) gift[k].own[3] = -points_[point_volume][first + k] * outflow[k];
+    for (size_t k = 0; k < count; ++k) gift[k].own[3] = -volume[k] * outflow[k];
 }
 
 template <Filling filling>
@@ -302,7 +279,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
     MaterialBlock material;
     FluidBlock fluids;
     BlockValues total_xx, total_yy;
-    LiquidGiftBlock gift;
+    FluidGiftBlock gift;
     for (size_t first = strip.first; first < strip.last; first += block_size) {
         const size_t count = std::min(block_size, strip.last - first);
         const double* mass = points_[solid_mass] + first;
@@ -350,20 +327,21 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
     BlockValues dilation, outflow;
     GiftBlock gift, liquid_gift;
     [[maybe_unused]] GiftBlock gas_gift;
+    [[maybe_unused]] FluidBlock fluids;
     for (size_t first = strip.first; first < strip.last; first += block_size) {
         const size_t count = std::min(block_size, strip.last - first);
         const Grid& grid = nodes_.grid;
         double* x = points_[position_x] + first;
         double* y = points_[position_y] + first;
         spline.find(grid, x, y, count);
-        if constexpr (filling != Filling::saturated) even_out(first, count, spline, dt);
+        if constexpr (filling != Filling::saturated) even_out(first, count, spline, dt, fluids);
         gather_divergence(grid, nodes_.velocity, count, spline, dilation);
         gather_divergence(grid, nodes_.flux, count, spline, outflow);
         take_velocity<keeps>(grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
                              velocity_x, affine_xx, gift, taken);
         take_velocity<keeps>(grid, nodes_.liquid_velocity, points_, first, count, spline, points_[water_mass] + first,
                              liquid_velocity_x, liquid_affine_xx, liquid_gift, liquid_taken);
-        if constexpr (has_gas) take_gas_velocity<keeps>(first, count, spline, gas_gift);
+        if constexpr (has_gas) take_gas_velocity<keeps>(first, count, spline, fluids.gas_volume, gas_gift);
         for (size_t k = 0; k < count; ++k) {
             gift[k].own[3] = points_[solid_mass][first + k] * dilation[k];
             liquid_gift[k].own[3] = -points_[point_volume][first + k] * outflow[k];
@@ -404,7 +382,7 @@ void ExplicitMixture<filling>::give(Strip strip) {
     }
 }
 
-/// Nothing comes back from nodes that points have left.
+/// Nothing comes back to the points from nodes that they have left: it is out of the ground.
 template <Filling filling>
 void ExplicitMixture<filling>::forget_left_nodes(std::vector<double>& returned) const {
     std::vector<double> kept(returned.size(), 0.0);

@@ -113,14 +113,15 @@ private:
     [[nodiscard]] double pore_stress(const FluidBlock& fluids, size_t k) const;
     void find_wave_speed();
     void fall_rain();
-    void even_out(size_t first, size_t count, const SplineBlock& spline, double dt);
+    void even_out(size_t first, size_t count, const SplineBlock& spline, double dt, FluidBlock& fluids);
     void owe_water(Strip strip);
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
     void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
     void take_gas(size_t first, size_t count, const SplineBlock& spline);
     void push_gas(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
     template <bool keeps>
-    void take_gas_velocity(size_t first, size_t count, const SplineBlock& spline, GiftBlock& gift);
+    void take_gas_velocity(size_t first, size_t count, const SplineBlock& spline, const BlockValues& volume,
+                           GiftBlock& gift);
     void give_gas(size_t first, size_t count, const SplineBlock& spline, const GiftBlock& gift);
     void forget_left_nodes(std::vector<double>& returned) const;
     void move_gas_nodes(const Grid& old);

@@ -15,6 +15,13 @@ constexpr double evening_share = 0.5;
 /// Gas is never thinner than this share of the atmosphere where a density is divided by.
 constexpr double least_density_share = 1e-6;
 
+void add_mirrored(NodeGradients& inside, const Mirror& mirror, const NodeGradients& beyond) {
+    inside.push_x += mirror.x * beyond.push_x;
+    inside.push_y += mirror.y * beyond.push_y;
+    inside.edge_x += mirror.x * beyond.edge_x;
+    inside.edge_y += mirror.y * beyond.edge_y;
+}
+
 double dot(const NodeVector& a, const NodeVector& b) { return a.x * b.x + a.y * b.y; }
 
 }  // namespace
@@ -28,7 +35,7 @@ void NodeGas::clear_flow(size_t node) {
 void NodeGas::resize(size_t nodes) {
     momentum.assign(nodes, {});
     weight.assign(nodes, 0.0);
-    push.assign(nodes, {});
+    gradients.assign(nodes, {});
     means.assign(nodes, {});
     velocity.resize(nodes);
     flux.resize(nodes);
@@ -63,7 +70,7 @@ void GridMixture<has_gas>::begin_step() {
         means[i] = {};
         if constexpr (has_gas) {
             force[i].y -= gravity * gas.momentum[i].mass;
-            gas.push[i] = {};
+            gas.gradients[i] = {};
             gas.means[i] = {};
         }
     });
@@ -77,7 +84,6 @@ void GridMixture<has_gas>::begin_step() {
         if constexpr (has_gas) {
             move_inside(gas.momentum[nodes.inside], gas.momentum[nodes.beyond], mirror);
             gas.weight[nodes.inside] += gas.weight[nodes.beyond];
-            gas.weight[nodes.beyond] = 0;
         }
     });
     for_each_node([this](size_t i) {
@@ -85,6 +91,7 @@ void GridMixture<has_gas>::begin_step() {
         const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
         velocity[i] = {solid.x * inverse, solid.y * inverse};
         liquid_velocity[i] = velocity[i];
+        if (!(solid.mass > 0)) seepage += flow_time * returned[i];
         if (liquid.mass > 0) liquid_velocity[i] = {liquid.x / liquid.mass, liquid.y / liquid.mass};
         rates[i] = {solid.more * inverse, (liquid.more + returned[i]) * inverse};
         if constexpr (has_gas) {
@@ -92,6 +99,7 @@ void GridMixture<has_gas>::begin_step() {
             gas.velocity[i] = velocity[i];
             if (own.mass > 0) gas.velocity[i] = {own.x / own.mass, own.y / own.mass};
             gas.rates[i] = gas.weight[i] > 0 ? (own.more + gas.returned[i]) / gas.weight[i] : 0;
+            if (!(gas.weight[i] > 0)) gas.escaped += flow_time * gas.returned[i];
         }
     });
     mirror();
@@ -121,12 +129,8 @@ void GridMixture<has_gas>::fold_forces() {
         add_mirrored(force[nodes.inside], mirror, force[nodes.beyond]);
     });
     for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
-        NodeGradients &in = gradients[nodes.inside], &out = gradients[nodes.beyond];
-        in.push_x += mirror.x * out.push_x;
-        in.push_y += mirror.y * out.push_y;
-        in.edge_x += mirror.x * out.edge_x;
-        in.edge_y += mirror.y * out.edge_y;
-        out = {};
+        add_mirrored(gradients[nodes.inside], mirror, gradients[nodes.beyond]);
+        gradients[nodes.beyond] = {};
         NodeMeans &mean_in = means[nodes.inside], &mean_out = means[nodes.beyond];
         mean_in.push += mean_out.push;
         mean_in.mobility += mean_out.mobility;
@@ -134,14 +138,13 @@ void GridMixture<has_gas>::fold_forces() {
         mean_in.volume += mean_out.volume;
         mean_out = {};
         if constexpr (has_gas) {
-            add_mirrored(gas.push[nodes.inside], mirror, gas.push[nodes.beyond]);
-            gas.push[nodes.beyond] = {};
-            GasMeans &gas_in = gas.means[nodes.inside], &gas_out = gas.means[nodes.beyond];
+            add_mirrored(gas.gradients[nodes.inside], mirror, gas.gradients[nodes.beyond]);
+            GasMeans& gas_in = gas.means[nodes.inside];
+            const GasMeans& gas_out = gas.means[nodes.beyond];
             gas_in.push += gas_out.push;
             gas_in.mobility += gas_out.mobility;
             gas_in.volume += gas_out.volume;
             gas_in.mass += gas_out.mass;
-            gas_out = {};
         }
     });
 }
@@ -199,14 +202,14 @@ GasAnswer GridMixture<has_gas>::answer_of_gas(size_t node, double dt) {
     const double volume = means[node].volume, mass = gas.momentum[node].mass;
     const GasMeans& mean = gas.means[node];
     GasAnswer answer;
-    if (!(mass > 0)) return answer;
+    if (!(mass > 0) || !(mean.volume > 0)) return answer;
     const double density = std::max(mean.mass / mean.volume, least_density_share * gas.density);
     answer.push = mean.push / mean.volume;
     answer.drag = dt * mean.volume / volume * momentum[node].mass / (mean.mobility * density);
-    answer.response = dt / volume;
+    answer.density = mass / mean.volume;
+    answer.response = dt / mean.volume;
     answer.moved = mass / (1 + answer.drag);
-    answer.conductance = answer.response * answer.moved;
-    const double spread = evening_share * answer.conductance * volume / (cell_volume() * mean.volume);
+    const double spread = evening_share * answer.moved * dt / (cell_volume() * mean.volume);
     gas.evening[node] = {spread, spread * answer.push};
     return answer;
 }
@@ -253,7 +256,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
         flux[node].*c = liquid_mass / mean.volume * (liquid.*c - solid.*c);
         if constexpr (has_gas) {
             gas.velocity[node].*c = (gas_alone + answer.drag * solid.*c) / (1 + answer.drag);
-            gas.flux[node].*c = gas.momentum[node].mass / mean.volume * (gas.velocity[node].*c - solid.*c);
+            gas.flux[node].*c = answer.density * (gas.velocity[node].*c - solid.*c);
         }
     };
     const auto flow = [&](const NodeVector& pushed, const NodeVector& gas_pushed) {
@@ -261,13 +264,16 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
         move(&NodeVector::y, pushed, gas_pushed);
     };
     const NodeVector inner{sums.push_x - push * outwards.x, sums.push_y - push * outwards.y};
-    NodeVector gas_inner{};
-    if constexpr (has_gas)
-        gas_inner = {gas.push[node].x - answer.push * outwards.x, gas.push[node].y - answer.push * outwards.y};
+    NodeVector gas_inner{}, gas_outwards{};
+    if constexpr (has_gas) {
+        const NodeGradients& gas_sums = gas.gradients[node];
+        gas_outwards = {gas_sums.edge_x, gas_sums.edge_y};
+        gas_inner = {gas_sums.push_x - answer.push * gas_outwards.x, gas_sums.push_y - answer.push * gas_outwards.y};
+    }
     if (!is_at_edge(node)) {
         flow(inner, gas_inner);
         returned[node] = dot(flux[node], outwards);
-        if constexpr (has_gas) gas.returned[node] = dot(gas.flux[node], outwards);
+        if constexpr (has_gas) gas.returned[node] = dot(gas.flux[node], gas_outwards);
         return;
     }
     const GroundEdge edge(outwards, mean.volume / cell_volume(), grid.cell_size);
@@ -283,7 +289,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     returned[node] = dot(flux[node], outwards);
     if constexpr (has_gas) {
         gas.flux[node] = edge.stretched(gas.flux[node]);
-        gas.returned[node] = dot(gas.flux[node], outwards);
+        gas.returned[node] = dot(gas.flux[node], gas_outwards);
     }
     if (!(edge.distance > 0)) return;
     const double carried = returned[node] - conductance / mean.volume * dot(edge.stretched(pushed), outwards);
@@ -296,11 +302,14 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
 template <bool has_gas>
 void GridMixture<has_gas>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
                                    const NodeVector& pushed) {
+    if (!(answer.moved > 0)) return;
+    const double volume = gas.means[node].volume, content = volume / means[node].volume;
+    const double conductance = dt * answer.moved / volume;
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
-    const double driven = answer.conductance / means[node].volume * dot(edge.stretched(pushed), outwards);
+    const double carried = dot(gas.flux[node], outwards) - conductance / volume * dot(edge.stretched(pushed), outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
-    const double drawn = answer.conductance * edge.length * (edge_push - answer.push) / edge.distance;
-    const double inflow = drawn - (gas.returned[node] - driven);
+    const double drawn = conductance * edge.length * (edge_push - answer.push) / edge.distance;
+    const double inflow = content * (drawn - carried);
     gas.returned[node] += inflow;
     gas.escaped -= dt * inflow;
 }

@@ -4,7 +4,7 @@
 //     rho_l V (v_l' - v_l) / dt = f + rho_l V b - (n_l / lambda) V (v_l' - v_s')                    (Darcy's law with inertia)
 //     m_s (v_s' - v_s) / dt + m_l (v_l' - v_l) / dt = f_m + (m_s + m_l) b
 // A gas that moves has the like, in terms of its potential psi = R T / M ln(P / P_0) + g y, which is uniform where it is at rest:
-//     V (v_g' - v_g) / dt = f_psi - (n_g / (lambda_g rho_g)) V (v_g' - v_s')
+//     V_g (v_g' - v_g) / dt = f_psi - (n_g / (lambda_g rho_g)) V_g (v_g' - v_s')
 // and its momentum counts in the second line.
 //
 // Pressure force and storage are each other's adjoint, and no water is lost between them. With the liquid's weight in it, the pressure
@@ -12,8 +12,8 @@
 // through the edge of the ground. The flux F leaves a node's surroundings with sum V N_j div F - F_j . e_j, e_j = sum V grad N_j, which adds
 // up to zero over all nodes; points get their shares of it by N_j and their solid mass. Through the edge goes what the difference to p = 0
 // there drives over the distance to the middle of the ground at the node, into full pores and at most what rain offers, or out. The gas alike,
-// with psi in place of the whole pressure, but points get their shares of it by N_j and their gas's volume: its density changes alike in
-// all of them, however little of it some hold. The edge is open to it both ways.
+// but with psi in place of the whole pressure and the volume V_g of the points' gas in place of V, and points get their shares of it by
+// that volume: where there is none nothing flows, and the density of little gas changes as that of much. The edge is open to it both ways.
 #pragma once
 
 #include "motion/explicit/grid_motion.hpp"
@@ -48,17 +48,17 @@ struct GasMeans {
 
 /// What nodes hold of a gas that moves.
 struct NodeGas {
-    std::vector<NodeMomentum> momentum;  ///< more: less the sum of V N div F, kg/s
-    std::vector<double> weight;          ///< sum of N times what points share their gas by, m2
-    std::vector<NodeVector> velocity;    ///< m/s
-    std::vector<NodeVector> flux;        ///< F, of gas through the solid, kg/(m2 s)
-    std::vector<NodeVector> push;        ///< sum of V psi grad N
-    std::vector<GasMeans> means;         ///< of the points
-    std::vector<double> returned;        ///< F_j . e_j and what crosses the surface, kg/s
-    std::vector<double> rates;           ///< that points share: gas gained, kg/s per weight
-    std::vector<NodeVector> evening;     ///< of the points' psi: x, kg/s per weight and J/kg; y, times the node's
-    double density = 0;                  ///< at no gauge pressure, kg/m3
-    double escaped = 0;                  ///< through the surface in the steps ended, kg
+    std::vector<NodeMomentum> momentum;    ///< more: less the sum of V_g N div F, kg/s
+    std::vector<double> weight;            ///< sum of N times what points share their gas by, m2
+    std::vector<NodeVector> velocity;      ///< m/s
+    std::vector<NodeVector> flux;          ///< through the solid, kg/(m2 s) of the gas's own area
+    std::vector<NodeGradients> gradients;  ///< of the gas: V_g in place of V, psi in place of the whole pressure
+    std::vector<GasMeans> means;           ///< of the points
+    std::vector<double> returned;          ///< F_j . e_j and what crosses the surface, kg/s
+    std::vector<double> rates;             ///< that points share: gas gained, kg/s per weight
+    std::vector<NodeVector> evening;       ///< of the points' psi: x, kg/s per weight and J/kg; y, times the node's
+    double density = 0;                    ///< at no gauge pressure, kg/m3
+    double escaped = 0;                    ///< through the surface in the steps ended, kg
 
     void resize(size_t nodes);
     void clear_flow(size_t node);
@@ -66,11 +66,11 @@ struct NodeGas {
 
 /// How the gas at a node answers to forces on it: v_g' = (v_g + response force + drag v_s') / (1 + drag).
 struct GasAnswer {
-    double push = 0;         ///< the node's mean of psi, J/kg
-    double response = 0;     ///< m/s per force
-    double drag = 0;         ///< -
-    double moved = 0;        ///< mass / (1 + drag), kg
-    double conductance = 0;  ///< flux per gradient of psi
+    double push = 0;      ///< the node's mean of psi, J/kg
+    double response = 0;  ///< m/s per force
+    double drag = 0;      ///< -
+    double moved = 0;     ///< mass / (1 + drag), kg
+    double density = 0;   ///< kg/m3
 };
 
 /// Of a column of the grid: the edge that faces up.
