@@ -167,9 +167,9 @@ void ExplicitMixture<filling>::owe_water(Strip strip) {
         for (size_t k = 0; k < count; ++k)
             points_[water_due][first + k] = nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
         if constexpr (has_gas) {
-            gather_value(nodes_.grid, nodes_.gas.rates, count, spline, rates.y);
+            gather_values(nodes_.grid, nodes_.gas.rates, count, spline, rates);
             for (size_t k = 0; k < count; ++k)
-                points_[gas_due][first + k] = nodes_.flow_time * gas_weight(first + k) * rates.y[k];
+                points_[gas_due][first + k] = gas_gain(first + k, rates.x[k], rates.y[k]);
         }
     }
 }
@@ -227,11 +227,11 @@ SharedPores ExplicitMixture<filling>::shared_pores(size_t p) const {
 /// What flowed to the points in the last step.
 template <Filling filling>
 void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const SplineBlock& spline) {
-    BlockValues rate;
-    gather_value(nodes_.grid, nodes_.gas.rates, count, spline, rate);
+    VelocityBlock rates;
+    gather_values(nodes_.grid, nodes_.gas.rates, count, spline, rates);
     for (size_t k = 0; k < count; ++k) {
         const size_t p = first + k;
-        points_[gas_mass][p] += restarted_ ? points_[gas_due][p] : nodes_.flow_time * gas_weight(p) * rate[k];
+        points_[gas_mass][p] += restarted_ ? points_[gas_due][p] : gas_gain(p, rates.x[k], rates.y[k]);
     }
 }
 
@@ -393,8 +393,8 @@ void ExplicitMixture<filling>::forget_left_nodes(std::vector<double>& returned) 
 template <Filling filling>
 void ExplicitMixture<filling>::move_gas_nodes(const Grid& old) {
     NodeGas& gas = nodes_.gas;
-    for (auto* field : {&gas.velocity, &gas.flux, &gas.evening}) move_nodes(*field, old, nodes_.grid);
-    for (auto* field : {&gas.rates, &gas.returned}) move_nodes(*field, old, nodes_.grid);
+    for (auto* field : {&gas.velocity, &gas.flux, &gas.rates, &gas.evening}) move_nodes(*field, old, nodes_.grid);
+    move_nodes(gas.returned, old, nodes_.grid);
 }
 
 template <Filling filling>

@@ -109,6 +109,10 @@ private:
         const double pores = pores_of(p);
         return std::max(pores - points_[water_mass][p] / water_.density, least_gas_share * pores);
     }
+    /// Of the last step, kg.
+    [[nodiscard]] double gas_gain(size_t p, double by_weight, double by_mass) const {
+        return nodes_.flow_time * (gas_weight(p) * by_weight + points_[gas_mass][p] * by_mass);
+    }
     [[nodiscard]] SharedPores shared_pores(size_t p) const;
     [[nodiscard]] double pore_stress(const FluidBlock& fluids, size_t k) const;
     void find_wave_speed();

@@ -98,8 +98,12 @@ void GridMixture<has_gas>::begin_step() {
             const NodeMomentum& own = gas.momentum[i];
             gas.velocity[i] = velocity[i];
             if (own.mass > 0) gas.velocity[i] = {own.x / own.mass, own.y / own.mass};
-            gas.rates[i] = gas.weight[i] > 0 ? (own.more + gas.returned[i]) / gas.weight[i] : 0;
-            if (!(gas.weight[i] > 0)) gas.escaped += flow_time * gas.returned[i];
+            const double gain = own.more + gas.returned[i];
+            const bool loses = gain < 0 && own.mass > 0;
+            gas.rates[i] = {};
+            if (loses) gas.rates[i].y = gain / own.mass;
+            if (!loses && gas.weight[i] > 0) gas.rates[i].x = gain / gas.weight[i];
+            if (!loses && !(gas.weight[i] > 0)) gas.escaped += flow_time * gain;
         }
     });
     mirror();

@@ -55,10 +55,11 @@ struct NodeGas {
     std::vector<NodeGradients> gradients;  ///< of the gas: V_g in place of V, psi in place of the whole pressure
     std::vector<GasMeans> means;           ///< of the points
     std::vector<double> returned;          ///< F_j . e_j and what crosses the surface, kg/s
-    std::vector<double> rates;             ///< that points share: gas gained, kg/s per weight
-    std::vector<NodeVector> evening;       ///< of the points' psi: x, kg/s per weight and J/kg; y, times the node's
-    double density = 0;                    ///< at no gauge pressure, kg/m3
-    double escaped = 0;                    ///< through the surface in the steps ended, kg
+    std::vector<NodeVector>
+        rates;  ///< x, gain that points share by weight, kg/(m2 s); y, loss that they share by their gas, 1/s
+    std::vector<NodeVector> evening;  ///< of the points' psi: x, kg/s per weight and J/kg; y, times the node's
+    double density = 0;               ///< at no gauge pressure, kg/m3
+    double escaped = 0;               ///< through the surface in the steps ended, kg
 
     void resize(size_t nodes);
     void clear_flow(size_t node);

@@ -141,19 +141,6 @@ inline void gather_values(const Grid& grid, const std::vector<NodeVector>& field
     }
 }
 
-/// The same of a single number.
-inline void gather_value(const Grid& grid, const std::vector<double>& field, size_t count, const SplineBlock& spline,
-                         BlockValues& value) {
-    NodePatch<Single, false> patch(field.data(), grid, spline.first[0]);
-    for (size_t k = 0; k < count; ++k) {
-        patch.move_to(spline.first[k]);
-        double sum = 0;
-        for (size_t j = 0; j < 3; ++j)
-            for (size_t i = 0; i < 3; ++i) sum += spline.value_y[j][k] * spline.value_x[i][k] * patch.node[j][i][0];
-        value[k] = sum;
-    }
-}
-
 /// A number of the points, to the nodes' sums.
 inline void scatter_value(const Grid& grid, size_t count, const SplineBlock& spline, const BlockValues& value,
                           std::vector<double>& field) {
