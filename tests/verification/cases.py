@@ -21,6 +21,7 @@ CASES = {
        for name in ("footing_q4", "footing_t3", "patch", "order", "elastic_bar", "rotation")},
     "saturated_wave": explicit_motion.saturated_wave_rows,
     "wave_speeds": explicit_motion.standing_wave_rows,
+    "gas_diffusion": explicit_motion.diffusion_rows,
     "column_explicit": explicit_motion.column_rows,
     "column_collapse": dynamic_slides.collapse_rows,
     "cohesive_slope": dynamic_slides.slope_rows,

@@ -2,6 +2,7 @@
 #include "motion/explicit/explicit_mixture.hpp"
 #include "verification/explicit_cases.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -29,10 +30,10 @@ Walls rollers(double cell_size) {
 }
 
 /// One point beside the other would move alike: a single row of them stands in the column's middle.
-FreePoints column_of_points(const Ground& ground, size_t cells) {
+FreePoints column_of_points(const Ground& ground, size_t cells, size_t fields = wet_fields) {
     const double cell_size = ground.height / static_cast<double>(cells), spacing = cell_size / 2;
     FreePoints points;
-    points.assign(2 * cells, wet_fields);
+    points.assign(2 * cells, fields);
     for (size_t p = 0; p < points.count; ++p) {
         points[position_x][p] = spacing;
         points[position_y][p] = (static_cast<double>(p) + 0.5) * spacing;
@@ -134,22 +135,122 @@ void standing_wave(size_t cells, double solid, double liquid, double mobility, d
     print("amplitude", amplitude, "}");
 }
 
+Hydraulics van_genuchten(double alpha, double n) {
+    Hydraulics soil;
+    soil.retention.alpha = alpha;
+    soil.retention.n = n;
+    soil.conductivity.along = soil.conductivity.across = 1e-4;
+    return soil;
+}
+
+/// Masses of the air in a column whose gas has one pressure, Pa.
+void fill_with_air(const Ground& ground, const ExplicitGas& air, double pressure, FreePoints& points) {
+    for (size_t p = 0; p < points.count; ++p)
+        points[gas_mass][p] = air.density * (1 + pressure / air.atmosphere) * ground.porosity * (1 - ground.filled) *
+                              points[point_volume][p];
+}
+
+ExplicitMixture<Filling::three_phase> column_with_gas(const Ground& ground, size_t cells, double gravity,
+                                                      double gas_mobility, bool closed, FreePoints points,
+                                                      const Hydraulics& soil, const ExplicitGas& air) {
+    const double cell_size = ground.height / static_cast<double>(cells);
+    Walls walls = rollers(cell_size);
+    if (closed) walls.top = {WallKind::roller, ground.height, 0};
+    return {cell_size,
+            walls,
+            gravity,
+            {{ground.elastic}},
+            {{ground.grain_density, ground.mobility, 0, false, gas_mobility}},
+            {SaturationTable(soil)},
+            {water_density, ground.bulk_modulus},
+            std::move(points),
+            1,
+            air};
+}
+
+template <class Column>
+int64_t advance(Column& column, double duration) {
+    const auto steps = static_cast<int64_t>(std::ceil(duration / column.critical_step()));
+    for (int64_t i = 1; i <= steps; ++i)
+        if (!column.step(duration / static_cast<double>(steps), i == steps)) std::exit(1);  // it came to no number
+    return steps;
+}
+
+/// Air let into next to dry, next to rigid ground at its top: profiles of the gas's pressure above the start's at some times. As the top
+/// has no pressure above the atmosphere, the atmosphere is by the step above that of the start.
+void gas_diffusion(size_t cells, double step, double mobility, const std::vector<double>& times) {
+    const Ground ground{1, 0.4, 2650, elasticity(2e8, 0.3), 1e-9, 1e7, 1e-3};
+    constexpr double start = 101325;
+    const ExplicitGas air{1.2041 * (start + step) / start, start + step};
+    FreePoints points = column_of_points(ground, cells, point_fields);
+    fill_with_air(ground, air, -step, points);
+    auto column = column_with_gas(ground, cells, 0, mobility, false, std::move(points), van_genuchten(1e-3, 2), air);
+    std::puts("[");
+    double now = 0;
+    for (const double time : times) {
+        advance(column, time - now);
+        now = time;
+        std::vector<double> height, pressure;
+        for (const size_t p : upwards(column)) {
+            height.push_back(column.points()[position_y][p]);
+            pressure.push_back(column.gas_pressure(p) + step);
+        }
+        std::printf("{\"time\": %.17g,\n", time);
+        print("height", height, ",");
+        print("pressure", pressure, time == times.back() ? "}" : "},");
+    }
+    std::puts("]");
+}
+
+/// A standing wave of half a wave length in a closed column of three phases: the solid's momentum in it, in time.
+void gas_wave(size_t cells, const std::array<double, 3>& motion, double alpha, double liquid_mobility,
+              double gas_mobility, double duration) {
+    const Ground ground{1, 0.4, 2650, elasticity(20e6, 0.3), liquid_mobility, 2e9, 0.8};
+    const ExplicitGas air{1.2, 101325};
+    FreePoints points = column_of_points(ground, cells, point_fields);
+    fill_with_air(ground, air, 0, points);
+    const double number = std::numbers::pi / ground.height;
+    const std::array<PointField, 3> velocity{velocity_y, liquid_velocity_y, gas_velocity_y};
+    const std::array<PointField, 3> affine{affine_yy, liquid_affine_yy, gas_affine_yy};
+    for (size_t p = 0; p < points.count; ++p) {
+        for (size_t phase = 0; phase < 3; ++phase) {
+            points[velocity[phase]][p] = 1e-4 * motion[phase] * std::sin(number * points[position_y][p]);
+            points[affine[phase]][p] = 1e-4 * motion[phase] * number * std::cos(number * points[position_y][p]);
+        }
+    }
+    auto column =
+        column_with_gas(ground, cells, 0, gas_mobility, true, std::move(points), van_genuchten(alpha, 2), air);
+    const auto steps = static_cast<int64_t>(std::ceil(duration / column.critical_step()));
+    const double dt = duration / static_cast<double>(steps);
+    std::array<std::vector<double>, 3> amplitude;
+    for (int64_t i = 1; i <= steps; ++i) {
+        column.step(dt, true);
+        for (size_t phase = 0; phase < 3; ++phase) {
+            double sum = 0;
+            for (size_t p = 0; p < column.points().count; ++p)
+                sum += column.points()[velocity[phase]][p] * std::sin(number * column.points()[position_y][p]);
+            amplitude[phase].push_back(sum);
+        }
+    }
+    std::printf("{\"step\": %.17g,\n", dt);
+    print("solid", amplitude[0], ",");
+    print("liquid", amplitude[1], ",");
+    print("gas", amplitude[2], "}");
+}
+
 /// The paper's column: profiles of pressure and saturation, means over cells, at its five times. As in the reference, the column is next to
 /// rigid and the last of them is when its last pore is filled: later by the water that it and its pores are compressed by.
 void column_explicit(size_t cells) {
     const double conductivity = 1e-4, gravity = 9.81;
     const Ground ground{1, 0.4, 3000, elasticity(2e8, 0.3), conductivity / (water_density * gravity), 1e8, 0.85};
-    Hydraulics soil;
-    soil.retention.alpha = 4e-5;
-    soil.retention.n = 1.2;
-    soil.conductivity.along = soil.conductivity.across = conductivity;
     FreePoints points = column_of_points(ground, cells);
     for (size_t p = 0; p < points.count; ++p) {
         const double depth = ground.height - points[position_y][p];
         points[stress_yy][p] = -(1800 + 340) * gravity * depth;
         points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
     }
-    auto column = column_of<Filling::unsaturated>(ground, cells, gravity, std::move(points), {SaturationTable(soil)});
+    auto column = column_of<Filling::unsaturated>(ground, cells, gravity, std::move(points),
+                                                  {SaturationTable(van_genuchten(4e-5, 1.2))});
     column.set_rain([](double) { return 1e-4; });
     std::puts("[");
     double now = 0, initial = 0;
@@ -193,10 +294,20 @@ int main(int count, char** arguments) {
                       std::atof(arguments[6]));
     } else if (name == "column_explicit" && count == 3) {
         column_explicit(cells);
+    } else if (name == "gas_diffusion" && count > 5) {
+        std::vector<double> times;
+        for (int i = 5; i < count; ++i) times.push_back(std::atof(arguments[i]));
+        gas_diffusion(cells, std::atof(arguments[3]), std::atof(arguments[4]), times);
+    } else if (name == "gas_wave" && count == 10) {
+        std::array<double, 7> number{};
+        for (size_t i = 0; i < number.size(); ++i) number[i] = std::atof(arguments[i + 3]);
+        gas_wave(cells, {number[0], number[1], number[2]}, number[3], number[4], number[5], number[6]);
     } else {
         std::fputs(
             "usage: explicit_histories saturated_wave|column_explicit CELLS\n"
-            "       explicit_histories standing_wave CELLS SOLID LIQUID MOBILITY DURATION\n",
+            "       explicit_histories standing_wave CELLS SOLID LIQUID MOBILITY DURATION\n"
+            "       explicit_histories gas_diffusion CELLS STEP MOBILITY TIME...\n"
+            "       explicit_histories gas_wave CELLS SOLID LIQUID GAS ALPHA LIQUID_MOBILITY GAS_MOBILITY DURATION\n",
             stderr);
         return 2;
     }

@@ -5,6 +5,7 @@ import os
 import pathlib
 import subprocess
 
+import gas_diffusion as gas
 import numpy
 import saturated_wave as closed_wave
 import wave_speeds as waves
@@ -72,6 +73,20 @@ def standing_wave_rows():
                       "Biot 1956, plane waves", clock)
             yield row("wave_speeds", f"decay of the {speed} wave over the frequency, {name}", "abs",
                       abs(omega.imag - exact.imag) / exact.real, 0.02, "1", "Biot 1956, plane waves", clock)
+
+
+def diffusion_rows():
+    """Air into dry ground: a small step against the series, a large one against the solution of the nonlinear equation."""
+    soil = gas.Soil()
+    times = [0.2, 1.0, 3.0]
+    for step, exact, source in ((10.0, None, "series, Carslaw & Jaeger 1959"), (50e3, gas.Nonlinear(soil, 1.0, 50e3, times), "P^2 diffusion, Chebyshev collocation")):
+        with Clock() as clock:
+            profiles = histories("gas_diffusion", 50, step, soil.permeability / soil.viscosity, *times)
+        for k, profile in enumerate(profiles):
+            height = numpy.array(profile["height"])
+            pressure = exact.pressure(height, k) if exact else gas.linear(soil, 1.0, step, height, times[k])
+            yield row("gas_diffusion", f"step of {step:g} Pa, pressure at {times[k]:g} s", "max",
+                      abs(profile["pressure"] - pressure).max() / step, 0.01, "1", source, clock)
 
 
 def column_rows():

@@ -12,6 +12,10 @@ constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is
 /// it would grow by chance from step to step, until the pressure of the fuller one counts (docs/verification.md).
 constexpr double evening_share = 0.5;
 
+/// Of smooth fields, the nodes' means seen by points again differ from the points' own by this many squares of a cell times the Laplacian: twice half
+/// of the splines' second moment. As much of Darcy's flow does evening them out pass on already.
+constexpr double smoothing = 0.25;
+
 /// Gas is never thinner than this share of the atmosphere where a density is divided by.
 constexpr double least_density_share = 1e-6;
 
@@ -214,6 +218,7 @@ GasAnswer GridMixture<has_gas>::answer_of_gas(size_t node, double dt) {
     answer.response = dt / mean.volume;
     answer.moved = mass / (1 + answer.drag);
     const double spread = evening_share * answer.moved * dt / (cell_volume() * mean.volume);
+    answer.evened = smoothing * evening_share * answer.moved * dt / (mean.volume * mean.volume);
     gas.evening[node] = {spread, spread * answer.push};
     return answer;
 }
@@ -260,7 +265,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
         flux[node].*c = liquid_mass / mean.volume * (liquid.*c - solid.*c);
         if constexpr (has_gas) {
             gas.velocity[node].*c = (gas_alone + answer.drag * solid.*c) / (1 + answer.drag);
-            gas.flux[node].*c = answer.density * (gas.velocity[node].*c - solid.*c);
+            gas.flux[node].*c = answer.density * (gas.velocity[node].*c - solid.*c) - answer.evened * gas_pushed.*c;
         }
     };
     const auto flow = [&](const NodeVector& pushed, const NodeVector& gas_pushed) {
@@ -308,9 +313,9 @@ void GridMixture<has_gas>::breathe(size_t node, double dt, const GroundEdge& edg
                                    const NodeVector& pushed) {
     if (!(answer.moved > 0)) return;
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
-    const double conductance = dt * answer.moved / volume;
+    const double conductance = dt * answer.moved / volume, driven = conductance / volume - answer.evened;
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
-    const double carried = dot(gas.flux[node], outwards) - conductance / volume * dot(edge.stretched(pushed), outwards);
+    const double carried = dot(gas.flux[node], outwards) - driven * dot(edge.stretched(pushed), outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
     const double drawn = conductance * edge.length * (edge_push - answer.push) / edge.distance;
     const double inflow = content * (drawn - carried);

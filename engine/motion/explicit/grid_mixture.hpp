@@ -72,6 +72,7 @@ struct GasAnswer {
     double drag = 0;      ///< -
     double moved = 0;     ///< mass / (1 + drag), kg
     double density = 0;   ///< kg/m3
+    double evened = 0;    ///< flux per force that evening out does, kg/(m2 s)
 };
 
 /// Of a column of the grid: the edge that faces up.
