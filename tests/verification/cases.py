@@ -20,7 +20,7 @@ CASES = {
     **{name: functools.partial(engine_cases.rows, name)
        for name in ("footing_q4", "footing_t3", "patch", "order", "elastic_bar", "rotation")},
     "saturated_wave": explicit_motion.saturated_wave_rows,
-    "wave_speeds": explicit_motion.standing_wave_rows,
+    "wave_speeds": explicit_motion.wave_rows,
     "gas_diffusion": explicit_motion.diffusion_rows,
     "column_explicit": explicit_motion.column_rows,
     "column_collapse": dynamic_slides.collapse_rows,

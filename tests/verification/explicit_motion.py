@@ -75,6 +75,37 @@ def standing_wave_rows():
                       abs(omega.imag - exact.imag) / exact.real, 0.02, "1", "Biot 1956, plane waves", clock)
 
 
+def three_phase_wave_rows():
+    """Standing waves of half a wave length in a closed column of soil, water and air (net stress; van Genuchten's n = 2)."""
+    number, alpha, wet = numpy.pi, 5e-6, 0.8
+    capacity = alpha * numpy.sqrt(wet**-2 - 1) * wet**3  # -dS/ds of S = (1 + (alpha s)^2)^-1/2
+    liquid_share = numpy.sqrt(wet) * (1 - numpy.sqrt(1 - wet**2)) ** 2  # k_rl, Mualem
+    gas_share = numpy.sqrt(1 - wet) * (1 - wet**2)  # k_rg, Parker, Lenhard & Kuppusamy
+    for name, liquid, air in (("little drag", 1e-2, 1e-2), ("sand", 1e-9, 5e-8)):
+        ground = waves.Unsaturated(bishop=0.0, saturation=wet, capacity=capacity, liquid_mobility=liquid * liquid_share,
+                                   gas_mobility=air * gas_share)
+        inverse = numpy.diag(1 / ground.partial_density())
+        system = numpy.block([[numpy.zeros((3, 3)), numpy.eye(3)], [-(number**2) * inverse @ ground.stiffness(), -inverse @ ground.drag()]])
+        rates, modes = numpy.linalg.eig(system)
+        oscillating = sorted((k for k in range(6) if rates[k].imag > 0.1 * abs(rates[k])), key=lambda k: -rates[k].imag)
+        for k, order in zip(oscillating, ("first", "second", "third")):
+            exact, velocity = 1j * numpy.conj(rates[k]), modes[3:, k]
+            phase = numpy.argmax(abs(velocity))
+            velocity = velocity / velocity[phase]
+            with Clock() as clock:
+                found = histories("gas_wave", 50, *velocity.real, alpha, liquid, air, 6 * 2 * numpy.pi / exact.real)
+            omega = frequency_of(found[("solid", "liquid", "gas")[phase]], found["step"], exact)
+            what = f"{order} wave of three phases, {name}"
+            yield row("wave_speeds", what, "rel", abs(omega.real / exact.real - 1), 0.02, "1", "plane waves of three phases", clock)
+            yield row("wave_speeds", f"decay of the {what}", "abs", abs(omega.imag - exact.imag) / exact.real, 0.02, "1",
+                      "plane waves of three phases", clock)
+
+
+def wave_rows():
+    yield from standing_wave_rows()
+    yield from three_phase_wave_rows()
+
+
 def diffusion_rows():
     """Air into dry ground: a small step against the series, a large one against the solution of the nonlinear equation."""
     soil = gas.Soil()
