@@ -282,6 +282,54 @@ void column_explicit(size_t cells) {
     std::puts("]");
 }
 
+/// The paper's column with air that can leave through its surface alone.
+void column_three_phase(size_t cells) {
+    const double conductivity = 1e-4, gravity = 9.81, mobility = conductivity / (water_density * gravity);
+    const Ground ground{1, 0.4, 3000, elasticity(2e7, 0.3), mobility, 1e7, 0.85};
+    const ExplicitGas air{101325 * 0.02896 / (8.314 * 293.15), 101325};
+    FreePoints points = column_of_points(ground, cells, point_fields);
+    fill_with_air(ground, air, 0, points);
+    for (size_t p = 0; p < points.count; ++p) {
+        const double depth = ground.height - points[position_y][p];
+        points[stress_yy][p] = -(1800 + 340) * gravity * depth;
+        points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
+    }
+    auto column = column_with_gas(ground, cells, gravity, mobility * 1e-3 / 1.8e-5, false, std::move(points),
+                                  van_genuchten(4e-5, 1.2), air);
+    column.set_rain([](double) { return 1e-4; });
+    const auto held = [&](PointField mass, PointField due) {
+        double sum = 0;
+        for (size_t p = 0; p < column.points().count; ++p) sum += column.points()[mass][p] + column.points()[due][p];
+        return sum;
+    };
+    const double width = ground.height / static_cast<double>(cells);
+    const double water = held(water_mass, water_due), gas = held(gas_mass, gas_due);
+    std::puts("[");
+    double now = 0;
+    for (const double time : {20.0, 80.0, 160.0, 320.0, 600.0}) {
+        advance(column, time - now);
+        now = time;
+        std::vector<double> height, pressure, gas_pressure, saturation;
+        for (const size_t p : upwards(column)) {
+            height.push_back(column.points()[position_y][p]);
+            pressure.push_back(column.pressure(p));
+            gas_pressure.push_back(column.gas_pressure(p));
+            saturation.push_back(column.saturation(p));
+        }
+        const double infiltrated = column.rained() - column.run_off() - column.seepage();
+        const double gained = held(water_mass, water_due) - water, lost = gas - held(gas_mass, gas_due);
+        std::printf("{\"time\": %.17g, \"infiltrated\": %.17g, \"escaped\": %.17g, ", time,
+                    infiltrated / (water_density * width), column.gas_escaped() / (air.density * width));
+        std::printf("\"water_missed\": %.17g, \"air_missed\": %.17g,\n", (gained - infiltrated) / water,
+                    (lost - column.gas_escaped()) / gas);
+        print("height", height, ",");
+        print("pressure", pressure, ",");
+        print("gas_pressure", gas_pressure, ",");
+        print("saturation", saturation, time < 600 ? "}," : "}");
+    }
+    std::puts("]");
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -294,6 +342,8 @@ int main(int count, char** arguments) {
                       std::atof(arguments[6]));
     } else if (name == "column_explicit" && count == 3) {
         column_explicit(cells);
+    } else if (name == "column_three_phase" && count == 3) {
+        column_three_phase(cells);
     } else if (name == "gas_diffusion" && count > 5) {
         std::vector<double> times;
         for (int i = 5; i < count; ++i) times.push_back(std::atof(arguments[i]));
@@ -304,7 +354,7 @@ int main(int count, char** arguments) {
         gas_wave(cells, {number[0], number[1], number[2]}, number[3], number[4], number[5], number[6]);
     } else {
         std::fputs(
-            "usage: explicit_histories saturated_wave|column_explicit CELLS\n"
+            "usage: explicit_histories saturated_wave|column_explicit|column_three_phase CELLS\n"
             "       explicit_histories standing_wave CELLS SOLID LIQUID MOBILITY DURATION\n"
             "       explicit_histories gas_diffusion CELLS STEP MOBILITY TIME...\n"
             "       explicit_histories gas_wave CELLS SOLID LIQUID GAS ALPHA LIQUID_MOBILITY GAS_MOBILITY DURATION\n",

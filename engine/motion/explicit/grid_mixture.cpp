@@ -242,6 +242,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     const double spread = evening_share * conductance * mean.volume / (cell_volume() * mass);
     evening[node] = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
+    const double evened = has_gas ? smoothing * evening_share * conductance / mean.volume : 0.0;
     const double moved = liquid_mass / (1 + drag);
     double coupled = mass + moved * drag;
     [[maybe_unused]] GasAnswer answer;
@@ -264,6 +265,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
         liquid.*c = (alone + drag * solid.*c) / (1 + drag);
         flux[node].*c = liquid_mass / mean.volume * (liquid.*c - solid.*c);
         if constexpr (has_gas) {
+            flux[node].*c -= evened * pushed.*c;
             gas.velocity[node].*c = (gas_alone + answer.drag * solid.*c) / (1 + answer.drag);
             gas.flux[node].*c = answer.density * (gas.velocity[node].*c - solid.*c) - answer.evened * gas_pushed.*c;
         }
@@ -301,7 +303,8 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
         gas.returned[node] = dot(gas.flux[node], gas_outwards);
     }
     if (!(edge.distance > 0)) return;
-    const double carried = returned[node] - conductance / mean.volume * dot(edge.stretched(pushed), outwards);
+    const double driven = has_gas ? conductance / mean.volume - evened : conductance / mean.volume;
+    const double carried = returned[node] - driven * dot(edge.stretched(pushed), outwards);
     const double drawn = conductance_of(mean.full_mobility) * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
     if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed);
