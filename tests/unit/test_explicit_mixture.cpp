@@ -118,21 +118,25 @@ TEST_CASE("a full column sheds the rain that it cannot hold, and its water stays
 TEST_CASE("water and gas share pores at any masses") {
     const SaturationTable table(loam());
     const PoreFluids fluids{2e9, 101325};
+    const auto at = [&](double wet) { return table.mixed_at(wet, std::log(table.odds(wet))); };
+    const auto shared = [&](const PoreFluids& pair, double filled, double gas) {
+        return share_pores(table, pair, filled, gas, at(filled));
+    };
     for (const double filled : {1e-3, 0.3, 0.85, 0.999, 1 - 1e-7, 1.0, 1.001, 1.05}) {
         for (const double gas : {1e-3, 10.0, 1e5, 1e7, 1e9}) {
-            const SharedPores pores = share_pores(table, fluids, filled, gas);
+            const SharedPores pores = shared(fluids, filled, gas);
             const double saturation = 1 - pores.gas_share;
             const double water = std::max(pores.water_pressure, 0.0) / fluids.bulk_modulus;
             CHECK(pores.gas_share > 0);
             CHECK(filled == doctest::Approx(saturation * (1 + water)).epsilon(1e-9));
             CHECK(gas / pores.gas_share == doctest::Approx(fluids.atmosphere + pores.gas_pressure).epsilon(1e-6));
             CHECK(pores.state.suction == doctest::Approx(pores.gas_pressure - pores.water_pressure).epsilon(1e-6));
-            CHECK(table.mixed_at(saturation).suction == doctest::Approx(pores.state.suction).epsilon(1e-6));
+            CHECK(at(saturation).suction == doctest::Approx(pores.state.suction).epsilon(1e-6));
         }
     }
-    const SharedPores squeezed = share_pores(table, {1e13, fluids.atmosphere}, 0.99, fluids.atmosphere);
+    const SharedPores squeezed = shared({1e13, fluids.atmosphere}, 0.99, fluids.atmosphere);
     CHECK(squeezed.gas_pressure / fluids.atmosphere == doctest::Approx(99).epsilon(1e-3));
-    const SharedPores full = share_pores(table, fluids, 1.0001, 0);
+    const SharedPores full = shared(fluids, 1.0001, 0);
     CHECK(full.water_pressure == doctest::Approx(2e5));
     CHECK(full.gas_pressure == full.water_pressure);
 }

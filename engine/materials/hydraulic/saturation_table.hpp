@@ -28,7 +28,12 @@ public:
         double permeability;      ///< k_rl, -
         double gas_permeability;  ///< k_rg, -
     };
-    [[nodiscard]] MixedState mixed_at(double saturation) const;
+    /// Of a saturation whose logit, ln(odds()), is known: logarithms of many at once are faster.
+    [[nodiscard]] MixedState mixed_at(double saturation, double logit) const;
+    [[nodiscard]] double odds(double saturation) const {
+        const double effective = this->effective(saturation);
+        return effective / (1 - effective);
+    }
 
     /// Of a saturation (-). At the maximum one and above: no suction; at the residual one and below: the dry end of the table.
     [[nodiscard]] State at(double saturation) const;
@@ -45,7 +50,6 @@ private:
     struct GasRow {
         double permeability, slope;  // likewise
     };
-    [[nodiscard]] double place_of(double effective) const;
 
     double residual_, maximum_;
     double chord_pressure_, chord_permeability_, chord_effective_;  // where the chord begins
@@ -59,18 +63,14 @@ inline constexpr double lowest = -25, spacing = 0.02;  // of ln(S_e / (1 - S_e))
 inline constexpr int count = 2501;
 }  // namespace saturation_rows
 
-inline double SaturationTable::place_of(double effective) const {
-    const double logit = effective > 0 ? std::log(effective / (1 - effective)) : saturation_rows::lowest;
-    return std::max((logit - saturation_rows::lowest) / saturation_rows::spacing, 0.0);
-}
-
 inline SaturationTable::State SaturationTable::at(double saturation) const {
     const double effective = (saturation - residual_) / (maximum_ - residual_);
     if (effective >= chord_effective_) {
         const double share = std::max(1 - effective, 0.0) / (1 - chord_effective_);
         return {share * chord_pressure_, 1 - share * (1 - chord_permeability_)};
     }
-    const double place = place_of(effective);
+    const double logit = effective > 0 ? std::log(effective / (1 - effective)) : saturation_rows::lowest;
+    const double place = std::max((logit - saturation_rows::lowest) / saturation_rows::spacing, 0.0);
     const auto row = static_cast<size_t>(std::min(place, saturation_rows::count - 2.0));
     const double t = place - static_cast<double>(row);
     const Row &a = rows_[row], &b = rows_[row + 1];
@@ -78,15 +78,15 @@ inline SaturationTable::State SaturationTable::at(double saturation) const {
             hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t).value};
 }
 
-inline SaturationTable::MixedState SaturationTable::mixed_at(double saturation) const {
-    const double effective = (saturation - residual_) / (maximum_ - residual_);
+inline SaturationTable::MixedState SaturationTable::mixed_at(double saturation, double logit) const {
+    const double effective = this->effective(saturation);
     if (effective >= 1) return {0, 0, 1, 0};
     if (effective >= chord_effective_) {
         const double by_share = 1 / (1 - chord_effective_), share = (1 - effective) * by_share;
         return {-share * chord_pressure_, chord_pressure_ * by_share / (maximum_ - residual_),
                 1 - share * (1 - chord_permeability_), share * chord_gas_permeability_};
     }
-    const double place = place_of(effective);
+    const double place = std::max(0.0, (logit - saturation_rows::lowest) / saturation_rows::spacing);  // 0 for NaN
     const auto row = static_cast<size_t>(std::min(place, saturation_rows::count - 2.0));
     const double t = place - static_cast<double>(row);
     const Row &a = rows_[row], &b = rows_[row + 1];

@@ -26,7 +26,7 @@ SharedPores press_pores(const SaturationTable& table, const PoreFluids& fluids, 
     for (int i = 0; i < most_iterations; ++i) {
         share = gas_share(fluids, filled, gas, suction);
         const double wet = 1 - share;
-        state = table.mixed_at(wet);
+        state = table.mixed_at(wet, std::log(table.odds(wet)));
         if (state.suction > suction) low = suction;
         if (state.suction < suction) high = suction;
         if (i == 0) high = state.suction;

@@ -25,13 +25,14 @@ struct PoreFluids {
     double atmosphere;    ///< Pa, absolute
 };
 
-/// Where the water is pressed together.
+/// Where the water is pressed together. `filled`: volume of the water without pressure, over the pores'; `gas`: Pa, absolute, were the pores full
+/// of it.
 SharedPores press_pores(const SaturationTable& table, const PoreFluids& fluids, double filled, double gas);
 
-/// `filled`: volume of the water without pressure, over the pores'; `gas`: Pa, absolute, were the pores full of it.
-inline SharedPores share_pores(const SaturationTable& table, const PoreFluids& fluids, double filled, double gas) {
+/// The same of any water; `state` is the retention's at `filled`.
+inline SharedPores share_pores(const SaturationTable& table, const PoreFluids& fluids, double filled, double gas,
+                               const SaturationTable::MixedState& state) {
     if (filled < 1) {
-        const SaturationTable::MixedState state = table.mixed_at(filled);
         const double gas_pressure = gas / (1 - filled) - fluids.atmosphere;
         if (gas_pressure <= state.suction) return {gas_pressure - state.suction, gas_pressure, 1 - filled, state};
     }

@@ -192,36 +192,43 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
             fluids.mobility[k] = fluids.full_mobility[k] * state.permeability;
             fluids.suction[k] = -state.pressure;
             fluids.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
-        } else {
-            const SharedPores pores = shared_pores(p);
-            fluids.pressure[k] = pores.water_pressure;
-            fluids.mobility[k] = fluids.full_mobility[k] * pores.state.permeability;
-            fluids.suction[k] = pores.state.suction;
-            fluids.effective_saturation[k] = std::clamp(tables_[soil].effective(1 - pores.gas_share), 0.0, 1.0);
-            fluids.gas_pressure[k] = pores.gas_pressure;
-            fluids.gas_mobility[k] =
-                hydraulics_[soil].gas_mobility * std::max(pores.state.gas_permeability, least_gas_permeability);
-            fluids.gas_volume[k] = pores.gas_share * pores_of(p);
         }
     }
-    if constexpr (has_gas) find_potential(first, count, fluids);
+    if constexpr (has_gas) share_pores(first, count, fluids);
 }
 
-/// psi, as of gas that is never thinner than next to none.
+/// Water and gas of a block of points, from their masses; psi is that of gas which is never thinner than next to none.
 template <Filling filling>
-void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidBlock& fluids) const {
+void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBlock& fluids) const {
+    using Values = Eigen::Map<Eigen::Array<double, block_size, 1>>;
     const double specific = gas_.atmosphere / gas_.density;  // R T / M, J/kg
+    const PoreFluids pair{water_.bulk_modulus, gas_.atmosphere};
+    BlockValues filled, logit{}, relative{};
     for (size_t k = 0; k < count; ++k) {
-        const double relative = std::max(1 + fluids.gas_pressure[k] / gas_.atmosphere, least_gas_pressure);
-        fluids.gas_potential[k] = specific * std::log(relative) + nodes_.gravity * points_[position_y][first + k];
+        fluids.pores[k] = pores_of(first + k);
+        filled[k] = points_[water_mass][first + k] / (water_.density * fluids.pores[k]);
+        logit[k] = tables_[static_cast<size_t>(points_.soil[first + k])].odds(filled[k]);
     }
-}
-
-template <Filling filling>
-SharedPores ExplicitMixture<filling>::shared_pores(size_t p) const {
-    const double alone = points_[gas_mass][p] * gas_.atmosphere / (gas_.density * pores_of(p));
-    return share_pores(tables_[static_cast<size_t>(points_.soil[p])], {water_.bulk_modulus, gas_.atmosphere},
-                       share_filled(p), std::max(alone, 0.0));
+    Values(logit.data()) = Values(logit.data()).log();
+    for (size_t k = 0; k < count; ++k) {
+        const auto soil = static_cast<size_t>(points_.soil[first + k]);
+        const SaturationTable& table = tables_[soil];
+        const double alone = std::max(points_[gas_mass][first + k] * specific / fluids.pores[k], 0.0);
+        const SharedPores pores =
+            talus::share_pores(table, pair, filled[k], alone, table.mixed_at(filled[k], logit[k]));
+        fluids.pressure[k] = pores.water_pressure;
+        fluids.mobility[k] = fluids.full_mobility[k] * pores.state.permeability;
+        fluids.suction[k] = pores.state.suction;
+        fluids.effective_saturation[k] = std::clamp(table.effective(1 - pores.gas_share), 0.0, 1.0);
+        fluids.gas_pressure[k] = pores.gas_pressure;
+        fluids.gas_mobility[k] =
+            hydraulics_[soil].gas_mobility * std::max(pores.state.gas_permeability, least_gas_permeability);
+        fluids.gas_volume[k] = pores.gas_share * fluids.pores[k];
+        relative[k] = std::max(1 + pores.gas_pressure / gas_.atmosphere, least_gas_pressure);
+    }
+    Values(relative.data()) = Values(relative.data()).log();
+    for (size_t k = 0; k < count; ++k)
+        fluids.gas_potential[k] = specific * relative[k] + nodes_.gravity * points_[position_y][first + k];
 }
 
 /// What flowed to the points in the last step.
@@ -500,13 +507,19 @@ double ExplicitMixture<filling>::pore_stress(size_t point) const {
 
 template <Filling filling>
 double ExplicitMixture<filling>::gas_pressure(size_t point) const {
-    if constexpr (has_gas) return shared_pores(point).gas_pressure;
-    return 0;
+    if constexpr (!has_gas) return 0;
+    FluidBlock fluids;
+    find_fluids(point, 1, fluids);
+    return fluids.gas_pressure[0];
 }
 
 template <Filling filling>
 double ExplicitMixture<filling>::saturation(size_t point) const {
-    if constexpr (has_gas) return 1 - shared_pores(point).gas_share;
+    if constexpr (has_gas) {
+        FluidBlock fluids;
+        find_fluids(point, 1, fluids);
+        return 1 - fluids.gas_volume[0] / fluids.pores[0];
+    }
     return std::min(share_filled(point), 1.0);
 }
 

@@ -92,7 +92,7 @@ private:
 
     struct FluidBlock {
         BlockValues pressure, mobility, full_mobility, suction, effective_saturation;  // of the water
-        BlockValues gas_pressure, gas_potential, gas_mobility, gas_volume;             // where it moves
+        BlockValues pores, gas_pressure, gas_potential, gas_mobility, gas_volume;      // where it moves
     };
 
     void arrange_points();
@@ -113,14 +113,13 @@ private:
     [[nodiscard]] double gas_gain(size_t p, double by_weight, double by_mass) const {
         return nodes_.flow_time * (gas_weight(p) * by_weight + points_[gas_mass][p] * by_mass);
     }
-    [[nodiscard]] SharedPores shared_pores(size_t p) const;
     [[nodiscard]] double pore_stress(const FluidBlock& fluids, size_t k) const;
     void find_wave_speed();
     void fall_rain();
     void even_out(size_t first, size_t count, const SplineBlock& spline, double dt, FluidBlock& fluids);
     void owe_water(Strip strip);
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
-    void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
+    void share_pores(size_t first, size_t count, FluidBlock& fluids) const;
     void take_gas(size_t first, size_t count, const SplineBlock& spline);
     void push_gas(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
     template <bool keeps>
