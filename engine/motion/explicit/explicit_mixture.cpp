@@ -29,6 +29,8 @@ void add_apparent_cohesion(const std::vector<ExplicitHydraulics>& hydraulics, co
 constexpr double least_gas_pressure = 1e-6;
 constexpr double least_gas_permeability = 1e-9;  // where no gas is left, so that nodes may divide by it
 
+using LogValues = Eigen::Map<Eigen::Array<double, block_size, 1>>;  // logarithms of a block at once
+
 /// What a point adds to the nodes' sums: with the splines' slope along x and along y, and with their value.
 struct FluidGift {
     Quad along_x = Quad::Zero(), along_y = Quad::Zero(), value = Quad::Zero();
@@ -135,12 +137,19 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     return true;
 }
 
-/// Points pass water and gas on to others around the same nodes, until all have the nodes' head. `fluids` is as before.
+/// Points pass water and gas on to others around the same nodes, until all have the nodes' head. With gas, `fluids` is filled from what
+/// keep_pressures() left.
 template <Filling filling>
 void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt,
                                         FluidBlock& fluids) {
     VelocityBlock evening;
-    find_fluids(first, count, fluids);
+    if constexpr (has_gas) {
+        std::copy_n(points_[water_due] + first, count, fluids.pressure.begin());
+        std::copy_n(points_[gas_due] + first, count, fluids.gas_pressure.begin());
+        find_potential(first, count, fluids);
+    } else {
+        find_fluids(first, count, fluids);
+    }
     gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
     const double unit_weight = nodes_.gravity * water_.density;
     for (size_t k = 0; k < count; ++k) {
@@ -153,6 +162,13 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
             points_[gas_mass][first + k] +=
                 dt * fluids.gas_volume[k] * (evening.y[k] - evening.x[k] * fluids.gas_potential[k]);
     }
+}
+
+/// Between the two passes of a step nothing is due: its place holds the pressures for the second pass.
+template <Filling filling>
+void ExplicitMixture<filling>::keep_pressures(size_t first, size_t count, const FluidBlock& fluids) {
+    std::copy_n(fluids.pressure.begin(), count, points_[water_due] + first);
+    std::copy_n(fluids.gas_pressure.begin(), count, points_[gas_due] + first);
 }
 
 /// What the flow of the last step brings to the points: they get it with the strain of the same time, in the next step.
@@ -197,38 +213,50 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
     if constexpr (has_gas) share_pores(first, count, fluids);
 }
 
-/// Water and gas of a block of points, from their masses; psi is that of gas which is never thinner than next to none.
+/// Water and gas of a block of points, from their masses.
 template <Filling filling>
 void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBlock& fluids) const {
-    using Values = Eigen::Map<Eigen::Array<double, block_size, 1>>;
     const double specific = gas_.atmosphere / gas_.density;  // R T / M, J/kg
     const PoreFluids pair{water_.bulk_modulus, gas_.atmosphere};
-    BlockValues filled, logit{}, relative{};
+    BlockValues pores, filled, logit{};
     for (size_t k = 0; k < count; ++k) {
-        fluids.pores[k] = pores_of(first + k);
-        filled[k] = points_[water_mass][first + k] / (water_.density * fluids.pores[k]);
+        pores[k] = pores_of(first + k);
+        filled[k] = points_[water_mass][first + k] / (water_.density * pores[k]);
         logit[k] = tables_[static_cast<size_t>(points_.soil[first + k])].odds(filled[k]);
     }
-    Values(logit.data()) = Values(logit.data()).log();
+    LogValues(logit.data()) = LogValues(logit.data()).log();
     for (size_t k = 0; k < count; ++k) {
         const auto soil = static_cast<size_t>(points_.soil[first + k]);
         const SaturationTable& table = tables_[soil];
-        const double alone = std::max(points_[gas_mass][first + k] * specific / fluids.pores[k], 0.0);
-        const SharedPores pores =
+        const double alone = std::max(points_[gas_mass][first + k] * specific / pores[k], 0.0);
+        const SharedPores found =
             talus::share_pores(table, pair, filled[k], alone, table.mixed_at(filled[k], logit[k]));
-        fluids.pressure[k] = pores.water_pressure;
-        fluids.mobility[k] = fluids.full_mobility[k] * pores.state.permeability;
-        fluids.suction[k] = pores.state.suction;
-        fluids.effective_saturation[k] = std::clamp(table.effective(1 - pores.gas_share), 0.0, 1.0);
-        fluids.gas_pressure[k] = pores.gas_pressure;
+        fluids.pressure[k] = found.water_pressure;
+        fluids.mobility[k] = fluids.full_mobility[k] * found.state.permeability;
+        fluids.suction[k] = found.state.suction;
+        fluids.effective_saturation[k] = std::clamp(table.effective(1 - found.gas_share), 0.0, 1.0);
+        fluids.gas_pressure[k] = found.gas_pressure;
         fluids.gas_mobility[k] =
-            hydraulics_[soil].gas_mobility * std::max(pores.state.gas_permeability, least_gas_permeability);
-        fluids.gas_volume[k] = pores.gas_share * fluids.pores[k];
-        relative[k] = std::max(1 + pores.gas_pressure / gas_.atmosphere, least_gas_pressure);
+            hydraulics_[soil].gas_mobility * std::max(found.state.gas_permeability, least_gas_permeability);
+        fluids.saturation[k] = 1 - found.gas_share;
     }
-    Values(relative.data()) = Values(relative.data()).log();
+    find_potential(first, count, fluids);
+}
+
+/// psi and the volume of the gas, as of gas that is never thinner than next to none.
+template <Filling filling>
+void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidBlock& fluids) const {
+    const double specific = gas_.atmosphere / gas_.density, per_atmosphere = 1 / gas_.atmosphere;
+    const double* mass = points_[gas_mass] + first;
+    const double* y = points_[position_y] + first;
+    for (size_t k = 0; k < count; ++k) {
+        const double relative = std::max(1 + per_atmosphere * fluids.gas_pressure[k], least_gas_pressure);
+        fluids.gas_volume[k] = mass[k] / (gas_.density * relative);
+        fluids.gas_potential[k] = relative;
+    }
+    LogValues(fluids.gas_potential.data()) = LogValues(fluids.gas_potential.data()).log();
     for (size_t k = 0; k < count; ++k)
-        fluids.gas_potential[k] = specific * relative[k] + nodes_.gravity * points_[position_y][first + k];
+        fluids.gas_potential[k] = specific * fluids.gas_potential[k] + nodes_.gravity * y[k];
 }
 
 /// What flowed to the points in the last step.
@@ -322,7 +350,10 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
                    fluids.full_mobility, gift);
         scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
         scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
-        if constexpr (has_gas) push_gas(first, count, spline, fluids);
+        if constexpr (has_gas) {
+            push_gas(first, count, spline, fluids);
+            keep_pressures(first, count, fluids);
+        }
     }
 }
 
@@ -482,7 +513,7 @@ Energies ExplicitMixture<filling>::energies() const {
 
 template <Filling filling>
 double ExplicitMixture<filling>::pressure(size_t point) const {
-    FluidBlock fluids;
+    FluidBlock fluids{};
     find_fluids(point, 1, fluids);
     return fluids.pressure[0];
 }
@@ -500,7 +531,7 @@ double ExplicitMixture<filling>::pore_stress(const FluidBlock& fluids, size_t k)
 
 template <Filling filling>
 double ExplicitMixture<filling>::pore_stress(size_t point) const {
-    FluidBlock fluids;
+    FluidBlock fluids{};
     find_fluids(point, 1, fluids);
     return pore_stress(fluids, 0);
 }
@@ -508,7 +539,7 @@ double ExplicitMixture<filling>::pore_stress(size_t point) const {
 template <Filling filling>
 double ExplicitMixture<filling>::gas_pressure(size_t point) const {
     if constexpr (!has_gas) return 0;
-    FluidBlock fluids;
+    FluidBlock fluids{};
     find_fluids(point, 1, fluids);
     return fluids.gas_pressure[0];
 }
@@ -516,9 +547,9 @@ double ExplicitMixture<filling>::gas_pressure(size_t point) const {
 template <Filling filling>
 double ExplicitMixture<filling>::saturation(size_t point) const {
     if constexpr (has_gas) {
-        FluidBlock fluids;
+        FluidBlock fluids{};
         find_fluids(point, 1, fluids);
-        return 1 - fluids.gas_volume[0] / fluids.pores[0];
+        return fluids.saturation[0];
     }
     return std::min(share_filled(point), 1.0);
 }

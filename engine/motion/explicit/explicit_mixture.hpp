@@ -50,7 +50,7 @@ struct ExplicitGas {
 enum class Filling { saturated, unsaturated, three_phase };
 
 /// Of the pores: no point counts less than this as room for gas.
-inline constexpr double least_gas_share = 1e-6;
+inline constexpr double least_room_share = 1e-6;
 
 template <Filling filling>
 class ExplicitMixture {
@@ -91,8 +91,8 @@ private:
     static constexpr bool has_gas = filling == Filling::three_phase;
 
     struct FluidBlock {
-        BlockValues pressure, mobility, full_mobility, suction, effective_saturation;  // of the water
-        BlockValues pores, gas_pressure, gas_potential, gas_mobility, gas_volume;      // where it moves
+        BlockValues pressure, mobility, full_mobility, suction, effective_saturation;   // of the water
+        BlockValues saturation, gas_pressure, gas_potential, gas_mobility, gas_volume;  // where it moves
     };
 
     void arrange_points();
@@ -107,7 +107,7 @@ private:
     /// What a point shares gas by: the volume that water without pressure leaves to it, m2.
     [[nodiscard]] double gas_weight(size_t p) const {
         const double pores = pores_of(p);
-        return std::max(pores - points_[water_mass][p] / water_.density, least_gas_share * pores);
+        return std::max(pores - points_[water_mass][p] / water_.density, least_room_share * pores);
     }
     /// Of the last step, kg.
     [[nodiscard]] double gas_gain(size_t p, double by_weight, double by_mass) const {
@@ -120,6 +120,8 @@ private:
     void owe_water(Strip strip);
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
     void share_pores(size_t first, size_t count, FluidBlock& fluids) const;
+    void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
+    void keep_pressures(size_t first, size_t count, const FluidBlock& fluids);
     void take_gas(size_t first, size_t count, const SplineBlock& spline);
     void push_gas(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
     template <bool keeps>

@@ -16,6 +16,9 @@ constexpr double evening_share = 0.5;
 /// of the splines' second moment. As much of Darcy's flow does evening them out pass on already.
 constexpr double smoothing = 0.25;
 
+/// Gas that fills less than this share of the ground moves with the solid, as by a drag beyond all others.
+constexpr double least_gas_share = 1e-6, locked = 1e30;
+
 /// Gas is never thinner than this share of the atmosphere where a density is divided by.
 constexpr double least_density_share = 1e-6;
 
@@ -210,7 +213,12 @@ GasAnswer GridMixture<has_gas>::answer_of_gas(size_t node, double dt) {
     const double volume = means[node].volume, mass = gas.momentum[node].mass;
     const GasMeans& mean = gas.means[node];
     GasAnswer answer;
-    if (!(mass > 0) || !(mean.volume > 0)) return answer;
+    if (!(mass > 0)) return answer;
+    if (mean.volume < least_gas_share * volume) {
+        answer.drag = locked;
+        answer.moved = mass / (1 + locked);
+        return answer;
+    }
     const double density = std::max(mean.mass / mean.volume, least_density_share * gas.density);
     answer.push = mean.push / mean.volume;
     answer.drag = dt * mean.volume / volume * momentum[node].mass / (mean.mobility * density);
@@ -314,7 +322,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
 template <bool has_gas>
 void GridMixture<has_gas>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
                                    const NodeVector& pushed) {
-    if (!(answer.moved > 0)) return;
+    if (!(answer.density > 0)) return;
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
     const double conductance = dt * answer.moved / volume, driven = conductance / volume - answer.evened;
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
