@@ -9,35 +9,39 @@
 namespace talus {
 namespace {
 
+enum class Needs { nothing, water, gas };
+
 struct PointEntry {
     const char* name;
     const char* units;
     const char* standard_name;
     int32_t components;
-    bool probed;       ///< whether probes record it
-    bool needs_water;  ///< whether a dry ground has none
+    bool probed;  ///< whether probes record it
+    Needs needs;
 };
 
 constexpr std::array entries{
-    PointEntry{"point_position", "m", "", 2, false, false},
-    PointEntry{"point_volume", "m2", "", 1, false, false},
-    PointEntry{"point_soil", "1", "", 1, false, false},
-    PointEntry{"point_pressure", "Pa", "soil_water__pressure", 1, false, true},
-    PointEntry{"saturation", "1", "soil_water__saturated_volume_fraction", 1, true, true},
-    PointEntry{"suction", "Pa", "soil_water__suction", 1, true, true},
-    PointEntry{"porosity", "1", "soil__porosity", 1, true, true},
-    PointEntry{"water_content", "1", "soil_water__volume_fraction", 1, true, true},
-    PointEntry{"darcy_flux", "m s-1", "soil_water__darcy_velocity", 2, true, true},
-    PointEntry{"displacement", "m", "soil__displacement", 2, true, false},
-    PointEntry{"velocity", "m s-1", "soil__velocity", 2, true, false},
-    PointEntry{"net_stress", "Pa", "soil__net_stress", 4, true, false},
-    PointEntry{"total_stress", "Pa", "soil__total_stress", 4, true, false},
-    PointEntry{"plastic_strain", "1", "soil__plastic_strain", 1, true, false},
-    PointEntry{"mobilised_strength", "1", "soil__mobilized_strength", 1, true, false},
+    PointEntry{"point_position", "m", "", 2, false, Needs::nothing},
+    PointEntry{"point_volume", "m2", "", 1, false, Needs::nothing},
+    PointEntry{"point_soil", "1", "", 1, false, Needs::nothing},
+    PointEntry{"point_pressure", "Pa", "soil_water__pressure", 1, false, Needs::water},
+    PointEntry{"gas_pressure", "Pa", "", 1, true, Needs::gas},
+    PointEntry{"saturation", "1", "soil_water__saturated_volume_fraction", 1, true, Needs::water},
+    PointEntry{"suction", "Pa", "soil_water__suction", 1, true, Needs::water},
+    PointEntry{"porosity", "1", "soil__porosity", 1, true, Needs::water},
+    PointEntry{"water_content", "1", "soil_water__volume_fraction", 1, true, Needs::water},
+    PointEntry{"darcy_flux", "m s-1", "soil_water__darcy_velocity", 2, true, Needs::water},
+    PointEntry{"displacement", "m", "soil__displacement", 2, true, Needs::nothing},
+    PointEntry{"velocity", "m s-1", "soil__velocity", 2, true, Needs::nothing},
+    PointEntry{"net_stress", "Pa", "soil__net_stress", 4, true, Needs::nothing},
+    PointEntry{"total_stress", "Pa", "soil__total_stress", 4, true, Needs::nothing},
+    PointEntry{"plastic_strain", "1", "soil__plastic_strain", 1, true, Needs::nothing},
+    PointEntry{"mobilised_strength", "1", "soil__mobilized_strength", 1, true, Needs::nothing},
 };
 
 bool has(const PointEntry& entry, const DynamicGround& ground) {
-    return !entry.needs_water || ground.mixture() != nullptr;
+    if (entry.needs == Needs::gas) return ground.has_gas();
+    return entry.needs == Needs::nothing || ground.has_water();
 }
 
 const PointEntry& find_entry(std::string_view name, const DynamicGround& ground) {
@@ -47,7 +51,8 @@ const PointEntry& find_entry(std::string_view name, const DynamicGround& ground)
         throw Error(Status::unknown_field, "a dynamic ground has no field '" + std::string(name) +
                                                "': it has no mesh, only fields of its points (see describe)");
     if (!has(*found, ground))
-        throw Error(Status::unknown_field, "field '" + std::string(name) + "' is left out: the scene has no water");
+        throw Error(Status::unknown_field, "field '" + std::string(name) + "' is left out: the scene has no " +
+                                               (found->needs == Needs::gas ? "gas that moves" : "water"));
     return *found;
 }
 
@@ -73,11 +78,11 @@ std::vector<double> each_by_number(const FreePoints& points, const Value& value)
 
 std::vector<double> stresses(const DynamicGround& ground, bool is_total) {
     std::vector<double> values = by_number(ground.points(), {stress_xx, stress_yy, stress_zz, stress_xy});
-    const DynamicGround::Mixture* mixture = ground.mixture();
-    if (mixture == nullptr) return values;  // net and total stress are the same
+    if (!ground.has_water()) return values;  // net and total stress are the same
     for (size_t p = 0; p < ground.points().count; ++p) {
-        const double net = mixture->pore_stress(p) - std::max(mixture->pressure(p), 0.0);
-        const double added = is_total ? -mixture->pore_stress(p) : -net;
+        const double pore_stress = ground.pore_stress(p);
+        const double larger = std::max(ground.pressure(p), ground.gas_pressure(p));
+        const double added = is_total ? -pore_stress : larger - pore_stress;
         for (size_t k = 0; k < 3; ++k) values[4 * static_cast<size_t>(ground.points().number[p]) + k] += added;
     }
     return values;
@@ -88,7 +93,7 @@ std::vector<double> darcy_flux(const DynamicGround& ground) {
     const FreePoints& points = ground.points();
     std::vector<double> values(2 * points.count);
     for (size_t p = 0; p < points.count; ++p) {
-        const double content = ground.porosity(p) * ground.mixture()->saturation(p);
+        const double content = ground.porosity(p) * ground.saturation(p);
         double* flux = &values[2 * static_cast<size_t>(points.number[p])];
         flux[0] = content * (points[liquid_velocity_x][p] - points[velocity_x][p]);
         flux[1] = content * (points[liquid_velocity_y][p] - points[velocity_y][p]);
@@ -97,15 +102,17 @@ std::vector<double> darcy_flux(const DynamicGround& ground) {
 }
 
 std::vector<double> derive_water(std::string_view name, const DynamicGround& ground) {
-    const DynamicGround::Mixture& mixture = *ground.mixture();
     const FreePoints& points = ground.points();
     if (name == "darcy_flux") return darcy_flux(ground);
     if (name == "porosity") return each_by_number(points, [&](size_t p) { return ground.porosity(p); });
-    if (name == "saturation") return each_by_number(points, [&](size_t p) { return mixture.saturation(p); });
-    if (name == "suction") return each_by_number(points, [&](size_t p) { return std::max(-mixture.pressure(p), 0.0); });
+    if (name == "saturation") return each_by_number(points, [&](size_t p) { return ground.saturation(p); });
+    if (name == "gas_pressure") return each_by_number(points, [&](size_t p) { return ground.gas_pressure(p); });
+    if (name == "suction")
+        return each_by_number(points,
+                              [&](size_t p) { return std::max(ground.gas_pressure(p) - ground.pressure(p), 0.0); });
     if (name == "water_content")
-        return each_by_number(points, [&](size_t p) { return ground.porosity(p) * mixture.saturation(p); });
-    return each_by_number(points, [&](size_t p) { return mixture.pressure(p); });
+        return each_by_number(points, [&](size_t p) { return ground.porosity(p) * ground.saturation(p); });
+    return each_by_number(points, [&](size_t p) { return ground.pressure(p); });
 }
 
 std::vector<double> derive(std::string_view name, const DynamicGround& ground) {

@@ -144,6 +144,7 @@ ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
     ExplicitHydraulics hydraulics;
     hydraulics.grain_density = soil.dry_density / (1 - soil.porosity);
     hydraulics.mobility = soil.hydraulics.conductivity.along / (scene.water.density * scene.gravity);
+    hydraulics.gas_mobility = hydraulics.mobility / scene.gas.viscosity_ratio;
     const Strength& strength = soil.solid.strength;
     if (strength.model == StrengthModel::fredlund)
         hydraulics.suction_tangent = tan_degrees(strength.suction_friction_angle);
@@ -183,6 +184,17 @@ void fill_with_water(const Scene& scene, const Mesh& mesh, const Locator& locato
         const double saturation =
             tables[soil].at(here).saturation * (1 + std::max(here, 0.0) / scene.water.bulk_modulus);
         points[water_mass][p] = scene.water.density * scene.soils[soil].porosity * saturation * points[point_volume][p];
+    }
+}
+
+/// Gas at the atmosphere's pressure in what the water leaves of the pores.
+void fill_with_gas(const Scene& scene, FreePoints& points) {
+    for (size_t f = wet_fields; f < point_fields; ++f) points.field[f].assign(points.count, 0.0);
+    for (size_t p = 0; p < points.count; ++p) {
+        const Soil& soil = scene.soils[static_cast<size_t>(points.soil[p])];
+        const double grains = points[solid_mass][p] * (1 - soil.porosity) / soil.dry_density;
+        const double room = points[point_volume][p] - grains - points[water_mass][p] / scene.water.density;
+        points[gas_mass][p] = scene.gas.density * std::max(room, 0.0);
     }
 }
 
@@ -273,6 +285,12 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     const bool is_net = scene.physics.stress == StressMeasure::net;
     const ExplicitWater water{scene.water.density, scene.water.bulk_modulus,
                               is_net ? PoreStress::net : PoreStress::bishop};
+    if (scene.physics.gas) {
+        fill_with_gas(scene, seeded.points);
+        return Motion(std::in_place_type<ThreePhases>, cell_size, walls, scene.gravity, explicit_soils(scene),
+                      std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads,
+                      ExplicitGas{scene.gas.density, scene.gas.atmosphere});
+    }
     return Motion(std::in_place_type<Mixture>, cell_size, walls, scene.gravity, explicit_soils(scene),
                   std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads);
 }
@@ -302,8 +320,12 @@ bool DynamicGround::advance(double from, double until, const RainAt& rain, const
     rests_ = false;
     watch_.moved_last = std::max(watch_.moved_last, from);
     std::visit([](auto& motion) { motion.restart(); }, motion_);  // what follows depends on the points alone
-    if (auto* mixture = std::get_if<Mixture>(&motion_)) mixture->set_rain(rain);
-    return std::visit([&](auto& motion) { return move(motion, from, until, cancelled); }, motion_);
+    return std::visit(
+        [&](auto& motion) {
+            if constexpr (requires { motion.set_rain(rain); }) motion.set_rain(rain);
+            return move(motion, from, until, cancelled);
+        },
+        motion_);
 }
 
 template <class Moving>
@@ -372,8 +394,38 @@ double DynamicGround::rain_on(const RainAt& rain) const {
     return sum;
 }
 
+template <class Query>
+auto DynamicGround::of_mixture(const Query& query) const {
+    return std::visit(
+        [&](const auto& motion) {
+            using Result = decltype(query(std::declval<const Mixture&>()));
+            if constexpr (requires { motion.rained(); }) {
+                return query(motion);
+            } else {
+                return Result{};
+            }
+        },
+        motion_);
+}
+
+double DynamicGround::pressure(size_t point) const {
+    return of_mixture([&](const auto& mixture) { return mixture.pressure(point); });
+}
+
+double DynamicGround::gas_pressure(size_t point) const {
+    return of_mixture([&](const auto& mixture) { return mixture.gas_pressure(point); });
+}
+
+double DynamicGround::saturation(size_t point) const {
+    return of_mixture([&](const auto& mixture) { return mixture.saturation(point); });
+}
+
+double DynamicGround::pore_stress(size_t point) const {
+    return of_mixture([&](const auto& mixture) { return mixture.pore_stress(point); });
+}
+
 double DynamicGround::water() const {
-    if (mixture() == nullptr) return 0;
+    if (!has_water()) return 0;
     double sum = 0;
     for (const PointField name : {water_mass, water_due})
         for (size_t p = 0; p < points().count; ++p) sum += points()[name][p];
@@ -386,9 +438,10 @@ double DynamicGround::porosity(size_t point) const {
 }
 
 WaterExchange DynamicGround::water_exchange() const {
-    if (mixture() == nullptr) return {};
-    const auto volume = [this](double mass) { return mass / water_density_; };
-    return {volume(mixture()->rained()), volume(mixture()->run_off()), volume(mixture()->seepage())};
+    return of_mixture([this](const auto& mixture) {
+        const auto volume = [this](double mass) { return mass / water_density_; };
+        return WaterExchange{volume(mixture.rained()), volume(mixture.run_off()), volume(mixture.seepage())};
+    });
 }
 
 /// Grains keep their volume: no ground is denser than they are.

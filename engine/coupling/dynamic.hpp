@@ -39,8 +39,6 @@ struct Handover {
 
 class DynamicGround {
 public:
-    using Mixture = ExplicitMixture<Filling::unsaturated>;
-
     /// Cuts the points out of the mesh; they take their stress from the mesh's points, where these have one, and what is
     /// handed over. Throws Error(invalid_scene) where a wall is not a straight side along an axis.
     DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Handover& handover,
@@ -61,7 +59,13 @@ public:
 
     [[nodiscard]] const FreePoints& points() const;
     [[nodiscard]] double cell_size() const;
-    [[nodiscard]] const Mixture* mixture() const { return std::get_if<Mixture>(&motion_); }  ///< none: dry
+    [[nodiscard]] bool has_water() const { return !std::holds_alternative<ExplicitMotion>(motion_); }
+    [[nodiscard]] bool has_gas() const { return std::holds_alternative<ThreePhases>(motion_); }  ///< that moves
+    // Of a point, where there is water; Pa, -.
+    [[nodiscard]] double pressure(size_t point) const;
+    [[nodiscard]] double gas_pressure(size_t point) const;  ///< 0: at rest
+    [[nodiscard]] double saturation(size_t point) const;
+    [[nodiscard]] double pore_stress(size_t point) const;
     [[nodiscard]] double water() const;  ///< in the ground, m3 per metre of thickness; 0: dry
     [[nodiscard]] WaterExchange water_exchange() const;
     [[nodiscard]] double porosity(size_t point) const;
@@ -73,7 +77,12 @@ public:
     [[nodiscard]] std::vector<double> mobilised_strength() const;
 
 private:
-    using Motion = std::variant<ExplicitMotion, Mixture>;
+    using Mixture = ExplicitMixture<Filling::unsaturated>;
+    using ThreePhases = ExplicitMixture<Filling::three_phase>;
+    using Motion = std::variant<ExplicitMotion, Mixture, ThreePhases>;
+    /// query(mixture) of ground with water, else nothing.
+    template <class Query>
+    auto of_mixture(const Query& query) const;
     static Motion make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Handover& handover,
                               int32_t threads);
     template <class Moving>

@@ -21,11 +21,18 @@ void fields(auto& visit, Is<Physics> auto& physics) {
     visit("deforming", physics.deforming);
     visit("stress", physics.stress);
     visit("regime", physics.regime);
+    visit("gas", physics.gas);
 }
 
 void fields(auto& visit, Is<Water> auto& water) {
     visit("density", water.density);
     visit("bulkModulus", water.bulk_modulus);
+}
+
+void fields(auto& visit, Is<Gas> auto& gas) {
+    visit("density", gas.density);
+    visit("viscosityRatio", gas.viscosity_ratio);
+    visit("atmosphere", gas.atmosphere);
 }
 
 // --- soils -----------------------------------------------------------------------------------------------------------
@@ -208,6 +215,7 @@ void fields(auto& visit, Is<Scene> auto& scene) {
     visit("physics", scene.physics);
     visit("gravity", scene.gravity);
     visit("water", scene.water);
+    visit("gas", scene.gas);
     visit("soils", scene.soils);
     visit("ground", scene.ground);
     visit("boundaries", scene.boundaries);

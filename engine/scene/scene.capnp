@@ -66,6 +66,8 @@ struct Scene {
   # Places with a history.
   dynamics @13 :Dynamics;
   # How the motion of a dynamic ground is computed.
+  gas @14 :Gas;
+  # The pore gas, where physics.gas says that it moves.
 }
 
 struct Physics {
@@ -78,6 +80,8 @@ struct Physics {
   # The stress that deforms the skeleton and decides on its strength.
   regime @3 :Regime = quasiStatic;
   # How the skeleton moves.
+  gas @4 :Bool = false;
+  # Whether the pore gas of a dynamic ground that holds water moves and is pressed together; false: its pressure is the atmosphere's.
 }
 
 enum Regime {
@@ -105,6 +109,16 @@ struct Water {
   # At zero pressure.
   bulkModulus @1 :Float64 = 2e9 $limits(unit = "Pa", low = 1e5, high = 1e15, slips = .pressureSlips);
   # Lower where the water holds air bubbles.
+}
+
+struct Gas {
+  # The pore gas: ideal, at one temperature, in the ground's surface at the pressure of the atmosphere. The defaults are those of air at 20 degrees.
+  density @0 :Float64 = 1.2041 $limits(unit = "kg/m3", low = 0.01, high = 100);
+  # At the pressure of the atmosphere.
+  viscosityRatio @1 :Float64 = 0.018 $limits(low = 1e-4, high = 10);
+  # Its viscosity over the water's.
+  atmosphere @2 :Float64 = 101325 $limits(unit = "Pa", low = 1e3, high = 1e8, slips = .pressureSlips);
+  # Absolute pressure of the atmosphere.
 }
 
 struct Soil {

@@ -39,6 +39,14 @@ struct Water {
     double bulk_modulus = 2e9;  ///< Pa; rho = density exp(p / bulk_modulus)
 };
 
+/// Of a gas that moves: ideal, at one temperature.
+struct Gas {
+    double density = 1.2041;         ///< at the atmosphere's pressure, kg/m3
+    double viscosity_ratio = 0.018;  ///< over the water's, -
+    double atmosphere = 101325;      ///< Pa, absolute
+    bool operator==(const Gas&) const = default;
+};
+
 // --- ground ----------------------------------------------------------------------------------------------------------
 
 /// A layer of a column: from `top` (m above the column's base) down to the next layer's top.
@@ -161,6 +169,7 @@ struct Physics {
     bool deforming = true;  ///< false: rigid skeleton
     StressMeasure stress = StressMeasure::net;
     MotionRegime regime = MotionRegime::quasi_static;
+    bool gas = false;  ///< whether the gas moves; false: its pressure is the atmosphere's
 };
 
 struct Numerics {
@@ -191,6 +200,7 @@ struct Scene {
     Physics physics;
     double gravity = 9.81;  ///< m/s2, downwards
     Water water;
+    Gas gas;
     std::vector<Soil> soils;
     Ground ground;
     std::vector<Boundary> boundaries;

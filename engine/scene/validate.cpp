@@ -69,6 +69,10 @@ void check_physics(const Check& check, const Scene& scene) {
         !(physics.water && scene.gravity == 0),
         "= 0 m/s2: must be above 0 where there is water, whose weight defines the conductivity");
     check_regime(check, scene);
+    const bool may_move = physics.water && physics.regime != MotionRegime::quasi_static;
+    check.at("physics").at("gas").require(!physics.gas || may_move,
+                                          "= true: needs water and a regime that is not quasiStatic");
+    check.at("gas").unused(!physics.gas && !(scene.gas == Gas{}), "a ground whose gas does not move (physics.gas)");
     check.at("name").require(scene.name.find_first_of("/\\") == std::string::npos,
                              "'" + scene.name + "': must have no slash; files are named after it");
 }

@@ -354,6 +354,41 @@ TEST_CASE("C API: wet ground in motion takes the rain, loses no water, and an un
     CHECK(read(engine, "darcy_flux").size() == place.size());
 }
 
+TEST_CASE("C API: gas that moves has a pressure of its own, and an undone step leaves no trace of it") {
+    std::string text = wet_text;
+    text.replace(text.find("\"regime\""), 0, "\"gas\": true, ");
+    text.replace(text.find("\"water\": {"), 0, "\"gas\": {\"viscosityRatio\": 0.02}, ");
+    Impatient impatient;
+    talus_options options = TALUS_OPTIONS_INIT;
+    options.progress = Impatient::progress;
+    options.progress_user = &impatient;
+    const host::Engine engine = host::engine(text.c_str(), &options), twin = host::engine(text.c_str());
+    talus_step_report report = TALUS_STEP_REPORT_INIT, plain = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_step(engine.get(), 0.1, &report) == TALUS_OK);
+    impatient.limit = impatient.calls + 3;
+    CHECK(talus_engine_step(engine.get(), 0.2, &report) == TALUS_CANCELLED);
+    REQUIRE(talus_engine_step(engine.get(), 0.2, &report) == TALUS_OK);
+    REQUIRE(talus_engine_step(twin.get(), 0.1, &plain) == TALUS_OK);
+    REQUIRE(talus_engine_step(twin.get(), 0.2, &plain) == TALUS_OK);
+    CHECK(read(engine, "gas_pressure") == read(twin, "gas_pressure"));
+    CHECK(std::abs(report.water_residual) < 1e-12 * report.water_stored);
+    const std::vector<double> pressure = read(engine, "point_pressure"), gas = read(engine, "gas_pressure"),
+                              suction = read(engine, "suction"), net = read(engine, "net_stress"),
+                              total = read(engine, "total_stress");
+    for (size_t p = 0; p < pressure.size(); ++p) {
+        CHECK(suction[p] == doctest::Approx(gas[p] - pressure[p]));
+        CHECK(total[4 * p] == doctest::Approx(net[4 * p] - gas[p]));
+    }
+    const host::Engine passive = host::engine(wet_text);
+    const auto leaves_out_gas = [](const host::Engine& of) {
+        const char* description = nullptr;
+        REQUIRE(talus_engine_describe(of.get(), &description) == TALUS_OK);
+        return std::string(description).find("gas flow") != std::string::npos;
+    };
+    CHECK(leaves_out_gas(passive));
+    CHECK(!leaves_out_gas(engine));
+}
+
 TEST_CASE("C API: from the storm through failure and motion to rest, with every drop of water") {
     Impatient impatient;
     talus_options options = TALUS_OPTIONS_INIT;
