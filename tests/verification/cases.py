@@ -23,6 +23,7 @@ CASES = {
     "wave_speeds": explicit_motion.wave_rows,
     "gas_diffusion": explicit_motion.diffusion_rows,
     "column_explicit": explicit_motion.column_rows,
+    "column_three_phase": explicit_motion.three_phase_column_rows,
     "column_collapse": dynamic_slides.collapse_rows,
     "cohesive_slope": dynamic_slides.slope_rows,
     "slope_gentle": lambda: slopes.rows("slope_gentle"),

@@ -119,6 +119,7 @@ void GridMixture<has_gas>::begin_step() {
 template <bool has_gas>
 void GridMixture<has_gas>::end_step(double dt) {
     fold_forces();
+    find_surface_widths();
     for_each_node([this, dt](size_t i) { solve(i, dt); });
     if (!immersed) cross_surface(dt);
     mirror();
@@ -170,17 +171,26 @@ double GridMixture<has_gas>::facing_up(size_t node) const {
     return is_at_edge(node) ? std::max(gradients[node].edge_y, 0.0) : 0.0;
 }
 
+template <bool has_gas>
+void GridMixture<has_gas>::find_surface_widths() {
+    const auto columns = static_cast<size_t>(grid.cells[0]);
+    surfaces_.assign(columns, {});
+    for_each_node([&](size_t i) { surfaces_[i % columns].width += facing_up(i); });
+}
+
+/// Rain on a node, kg/s.
+template <bool has_gas>
+double GridMixture<has_gas>::falls_on(size_t node) const {
+    const size_t column = node % static_cast<size_t>(grid.cells[0]);
+    const double up = rain.empty() ? 0.0 : facing_up(node);
+    return up > 0 ? rain[column] * grid.cell_size * up / surfaces_[column].width : 0.0;
+}
+
 /// Every column's rain falls on its nodes at the edge in proportion to the edge's horizontal width there. What one of them cannot take, or
 /// gives back, is offered to the others. What none takes leaves: within the column's own rain it is run-off, the rest seepage.
 template <bool has_gas>
 void GridMixture<has_gas>::cross_surface(double dt) {
     const auto columns = static_cast<size_t>(grid.cells[0]);
-    surfaces_.assign(columns, {});
-    for_each_node([&](size_t i) { surfaces_[i % columns].width += facing_up(i); });
-    const auto falls_on = [&](size_t i) {
-        const double up = rain.empty() ? 0.0 : facing_up(i);
-        return up > 0 ? rain[i % columns] * grid.cell_size * up / surfaces_[i % columns].width : 0.0;
-    };
     const auto takes = [&](size_t i) { return std::min(falls_on(i), capacity[i]); };
     for_each_node([&](size_t i) {
         if (!is_at_edge(i)) return;
@@ -318,17 +328,21 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed);
 }
 
-/// The atmosphere draws gas in or out by the difference of psi over the distance to the edge, besides what the gas's momentum carries.
+/// The atmosphere draws gas in or out by the difference of psi over the distance to the edge, besides what the gas's momentum carries. k_rg on the way is
+/// the mean of the node's and the edge's: there it is less, as the suction is, by the share of what the edge can take that rain offers, and none
+/// where that is all.
 template <bool has_gas>
 void GridMixture<has_gas>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
                                    const NodeVector& pushed) {
     if (!(answer.density > 0)) return;
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
     const double conductance = dt * answer.moved / volume, driven = conductance / volume - answer.evened;
+    const double wetted = capacity[node] > 0 ? std::min(falls_on(node) / capacity[node], 1.0) : 1.0;
+    const double outer_conductance = conductance * (1 + answer.drag) / (1 + answer.drag / (1 - 0.5 * wetted));
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
     const double carried = dot(gas.flux[node], outwards) - driven * dot(edge.stretched(pushed), outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
-    const double drawn = conductance * edge.length * (edge_push - answer.push) / edge.distance;
+    const double drawn = outer_conductance * edge.length * (edge_push - answer.push) / edge.distance;
     const double inflow = content * (drawn - carried);
     gas.returned[node] += inflow;
     gas.escaped -= dt * inflow;

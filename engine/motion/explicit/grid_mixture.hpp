@@ -125,6 +125,8 @@ private:
     [[nodiscard]] bool is_at_edge(size_t node) const;
     void fold_forces();
     [[nodiscard]] double facing_up(size_t node) const;
+    void find_surface_widths();
+    [[nodiscard]] double falls_on(size_t node) const;
     void cross_surface(double dt);
     [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
     void solve(size_t node, double dt);
