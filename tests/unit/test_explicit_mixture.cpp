@@ -118,7 +118,10 @@ TEST_CASE("a full column sheds the rain that it cannot hold, and its water stays
 TEST_CASE("water and gas share pores at any masses") {
     const SaturationTable table(loam());
     const PoreFluids fluids{2e9, 101325};
-    const auto at = [&](double wet) { return table.mixed_at(wet, std::log(table.odds(wet))); };
+    const auto at = [&](double wet) {
+        const double effective = table.effective(wet);
+        return table.mixed_at(effective, std::log(SaturationTable::odds(effective)));
+    };
     const auto shared = [&](const PoreFluids& pair, double filled, double gas) {
         return share_pores(table, pair, filled, gas, at(filled));
     };

@@ -24,16 +24,14 @@ public:
     /// What pores that also hold moving gas need.
     struct MixedState {
         double suction;           ///< Pa
-        double suction_slope;     ///< by the saturation, Pa
         double permeability;      ///< k_rl, -
         double gas_permeability;  ///< k_rg, -
     };
-    /// Of a saturation whose logit, ln(odds()), is known: logarithms of many at once are faster.
-    [[nodiscard]] MixedState mixed_at(double saturation, double logit) const;
-    [[nodiscard]] double odds(double saturation) const {
-        const double effective = this->effective(saturation);
-        return effective / (1 - effective);
-    }
+    /// Of an effective saturation whose logit, ln(odds()), is known: logarithms of many at once are faster.
+    [[nodiscard]] MixedState mixed_at(double effective, double logit) const;
+    /// The suction's by the saturation, Pa; above the maximum none.
+    [[nodiscard]] double suction_slope(double effective, double logit) const;
+    [[nodiscard]] static double odds(double effective) { return effective / (1 - effective); }
 
     /// Of a saturation (-). At the maximum one and above: no suction; at the residual one and below: the dry end of the table.
     [[nodiscard]] State at(double saturation) const;
@@ -47,6 +45,11 @@ private:
     struct Row {
         double pressure, pressure_slope, permeability, permeability_slope;  // slopes per row
     };
+    struct Place {
+        size_t row;
+        double t;  // from it to the next
+    };
+    [[nodiscard]] static Place place_of(double logit);
     struct GasRow {
         double permeability, slope;  // likewise
     };
@@ -78,24 +81,34 @@ inline SaturationTable::State SaturationTable::at(double saturation) const {
             hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t).value};
 }
 
-inline SaturationTable::MixedState SaturationTable::mixed_at(double saturation, double logit) const {
-    const double effective = this->effective(saturation);
-    if (effective >= 1) return {0, 0, 1, 0};
-    if (effective >= chord_effective_) {
-        const double by_share = 1 / (1 - chord_effective_), share = (1 - effective) * by_share;
-        return {-share * chord_pressure_, chord_pressure_ * by_share / (maximum_ - residual_),
-                1 - share * (1 - chord_permeability_), share * chord_gas_permeability_};
-    }
-    const double place = std::max(0.0, (logit - saturation_rows::lowest) / saturation_rows::spacing);  // 0 for NaN
+inline SaturationTable::Place SaturationTable::place_of(double logit) {
+    const double place =
+        std::max(0.0, (logit - saturation_rows::lowest) * (1 / saturation_rows::spacing));  // 0 for NaN
     const auto row = static_cast<size_t>(std::min(place, saturation_rows::count - 2.0));
-    const double t = place - static_cast<double>(row);
+    return {row, place - static_cast<double>(row)};
+}
+
+inline SaturationTable::MixedState SaturationTable::mixed_at(double effective, double logit) const {
+    if (effective >= 1) return {0, 1, 0};
+    if (effective >= chord_effective_) {
+        const double share = (1 - effective) / (1 - chord_effective_);
+        return {-share * chord_pressure_, 1 - share * (1 - chord_permeability_), share * chord_gas_permeability_};
+    }
+    const auto [row, t] = place_of(logit);
     const Row &a = rows_[row], &b = rows_[row + 1];
     const GasRow &gas_a = gas_rows_[row], &gas_b = gas_rows_[row + 1];
-    const Hermite pressure = hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t);
-    const double by_row = saturation_rows::spacing * effective * (1 - effective) * (maximum_ - residual_);
-    return {-pressure.value, place > 0 ? -pressure.slope / by_row : 0,
+    return {-hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t).value,
             hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t).value,
             hermite(gas_a.permeability, gas_b.permeability, gas_a.slope, gas_b.slope, t).value};
+}
+
+inline double SaturationTable::suction_slope(double effective, double logit) const {
+    if (effective >= 1) return 0;
+    if (effective >= chord_effective_) return chord_pressure_ / ((1 - chord_effective_) * (maximum_ - residual_));
+    const auto [row, t] = place_of(logit);
+    const Row &a = rows_[row], &b = rows_[row + 1];
+    const double by_row = saturation_rows::spacing * effective * (1 - effective) * (maximum_ - residual_);
+    return by_row > 0 ? -hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t).slope / by_row : 0;
 }
 
 }  // namespace talus

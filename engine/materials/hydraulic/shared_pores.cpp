@@ -25,13 +25,14 @@ SharedPores press_pores(const SaturationTable& table, const PoreFluids& fluids, 
     SaturationTable::MixedState state{};
     for (int i = 0; i < most_iterations; ++i) {
         share = gas_share(fluids, filled, gas, suction);
-        const double wet = 1 - share;
-        state = table.mixed_at(wet, std::log(table.odds(wet)));
+        const double wet = 1 - share, effective = table.effective(wet);
+        const double logit = std::log(SaturationTable::odds(effective));
+        state = table.mixed_at(effective, logit);
         if (state.suction > suction) low = suction;
         if (state.suction < suction) high = suction;
         if (i == 0) high = state.suction;
         const double stiffness = gas / std::max(share * share, 1e-300) + fluids.bulk_modulus * filled / (wet * wet);
-        const double step = (state.suction - suction) / (1 - state.suction_slope / stiffness);
+        const double step = (state.suction - suction) / (1 - table.suction_slope(effective, logit) / stiffness);
         if (std::abs(step) <= tolerance * (suction + fluids.atmosphere)) break;
         suction += step;
         if (suction <= low || suction >= high) suction = 0.5 * (low + high);

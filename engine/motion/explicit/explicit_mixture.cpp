@@ -218,11 +218,12 @@ template <Filling filling>
 void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBlock& fluids) const {
     const double specific = gas_.atmosphere / gas_.density;  // R T / M, J/kg
     const PoreFluids pair{water_.bulk_modulus, gas_.atmosphere};
-    BlockValues pores, filled, logit{};
+    BlockValues pores, filled, effective, logit{};
     for (size_t k = 0; k < count; ++k) {
         pores[k] = pores_of(first + k);
         filled[k] = points_[water_mass][first + k] / (water_.density * pores[k]);
-        logit[k] = tables_[static_cast<size_t>(points_.soil[first + k])].odds(filled[k]);
+        effective[k] = tables_[static_cast<size_t>(points_.soil[first + k])].effective(filled[k]);
+        logit[k] = SaturationTable::odds(effective[k]);
     }
     LogValues(logit.data()) = LogValues(logit.data()).log();
     for (size_t k = 0; k < count; ++k) {
@@ -230,11 +231,11 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
         const SaturationTable& table = tables_[soil];
         const double alone = std::max(points_[gas_mass][first + k] * specific / pores[k], 0.0);
         const SharedPores found =
-            talus::share_pores(table, pair, filled[k], alone, table.mixed_at(filled[k], logit[k]));
+            talus::share_pores(table, pair, filled[k], alone, table.mixed_at(effective[k], logit[k]));
         fluids.pressure[k] = found.water_pressure;
         fluids.mobility[k] = fluids.full_mobility[k] * found.state.permeability;
         fluids.suction[k] = found.state.suction;
-        fluids.effective_saturation[k] = std::clamp(table.effective(1 - found.gas_share), 0.0, 1.0);
+        fluids.effective_saturation[k] = std::clamp(effective[k], 0.0, 1.0);
         fluids.gas_pressure[k] = found.gas_pressure;
         fluids.gas_mobility[k] =
             hydraulics_[soil].gas_mobility * std::max(found.state.gas_permeability, least_gas_permeability);
