@@ -144,23 +144,22 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
                                         FluidBlock& fluids) {
     VelocityBlock evening;
     if constexpr (has_gas) {
+        VelocityBlock gas_evening;
         std::copy_n(points_[water_due] + first, count, fluids.pressure.begin());
         std::copy_n(points_[gas_due] + first, count, fluids.gas_pressure.begin());
         find_potential(first, count, fluids);
+        gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
+        for (size_t k = 0; k < count; ++k)
+            points_[gas_mass][first + k] +=
+                dt * fluids.gas_volume[k] * (gas_evening.y[k] - gas_evening.x[k] * fluids.gas_potential[k]);
     } else {
         find_fluids(first, count, fluids);
+        gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
     }
-    gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
     const double unit_weight = nodes_.gravity * water_.density;
     for (size_t k = 0; k < count; ++k) {
         const double head = fluids.pressure[k] + unit_weight * points_[position_y][first + k];
         points_[water_mass][first + k] += dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head);
-    }
-    if constexpr (has_gas) {
-        gather_values(nodes_.grid, nodes_.gas.evening, count, spline, evening);
-        for (size_t k = 0; k < count; ++k)
-            points_[gas_mass][first + k] +=
-                dt * fluids.gas_volume[k] * (evening.y[k] - evening.x[k] * fluids.gas_potential[k]);
     }
 }
 
@@ -262,9 +261,7 @@ void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidB
 
 /// What flowed to the points in the last step.
 template <Filling filling>
-void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const SplineBlock& spline) {
-    VelocityBlock rates;
-    gather_values(nodes_.grid, nodes_.gas.rates, count, spline, rates);
+void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const VelocityBlock& rates) {
     for (size_t k = 0; k < count; ++k) {
         const size_t p = first + k;
         points_[gas_mass][p] += restarted_ ? points_[gas_due][p] : gas_gain(p, rates.x[k], rates.y[k]);
@@ -285,18 +282,6 @@ void ExplicitMixture<filling>::push_gas(size_t first, size_t count, const Spline
     }
     scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gas.gradients);
     scatter_means(nodes_.grid, count, spline, gift, nodes_.gas.means);
-}
-
-template <Filling filling>
-template <bool keeps>
-void ExplicitMixture<filling>::take_gas_velocity(size_t first, size_t count, const SplineBlock& spline,
-                                                 const BlockValues& volume, GiftBlock& gift) {
-    VelocityBlock taken;
-    BlockValues outflow;
-    gather_divergence(nodes_.grid, nodes_.gas.flux, count, spline, outflow);
-    take_velocity<keeps>(nodes_.grid, nodes_.gas.velocity, points_, first, count, spline, points_[gas_mass] + first,
-                         gas_velocity_x, gas_affine_xx, gift, taken);
-    for (size_t k = 0; k < count; ++k) gift[k].own[3] = -volume[k] * outflow[k];
 }
 
 template <Filling filling>
@@ -321,8 +306,13 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         const double* mass = points_[solid_mass] + first;
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
         gather_gradient(nodes_.grid, nodes_.velocity, count, spline, gradient);
-        gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
-        if constexpr (has_gas) take_gas(first, count, spline);
+        if constexpr (has_gas) {
+            VelocityBlock gas_rates;
+            gather_pairs(nodes_.grid, nodes_.gas.both_rates, count, spline, rates, gas_rates);
+            take_gas(first, count, gas_rates);
+        } else {
+            gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
+        }
         for (size_t k = 0; k < count; ++k) {
             const double due = restarted_ ? points_[water_due][first + k] : nodes_.flow_time * mass[k] * rates.y[k];
             points_[water_mass][first + k] += due;
@@ -362,7 +352,8 @@ template <Filling filling>
 template <bool keeps>
 void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
     SplineBlock spline;
-    VelocityBlock taken, liquid_taken;
+    VelocityBlock taken;
+    [[maybe_unused]] VelocityBlock liquid_taken;
     BlockValues dilation, outflow;
     GiftBlock gift, liquid_gift;
     [[maybe_unused]] GiftBlock gas_gift;
@@ -375,12 +366,21 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         spline.find(grid, x, y, count);
         if constexpr (filling != Filling::saturated) even_out(first, count, spline, dt, fluids);
         gather_divergence(grid, nodes_.velocity, count, spline, dilation);
-        gather_divergence(grid, nodes_.flux, count, spline, outflow);
         take_velocity<keeps>(grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
-                             velocity_x, affine_xx, gift, taken);
-        take_velocity<keeps>(grid, nodes_.liquid_velocity, points_, first, count, spline, points_[water_mass] + first,
-                             liquid_velocity_x, liquid_affine_xx, liquid_gift, liquid_taken);
-        if constexpr (has_gas) take_gas_velocity<keeps>(first, count, spline, fluids.gas_volume, gas_gift);
+                             {velocity_x, affine_xx}, gift, taken);
+        constexpr VelocityFields liquid_fields{liquid_velocity_x, liquid_affine_xx};
+        if constexpr (has_gas) {
+            BlockValues gas_outflow;
+            gather_divergences(grid, nodes_.gas.fluxes, count, spline, outflow, gas_outflow);
+            take_velocities<keeps>(grid, nodes_.gas.velocities, points_, first, count, spline,
+                                   {points_[water_mass] + first, points_[gas_mass] + first},
+                                   {liquid_fields, {gas_velocity_x, gas_affine_xx}}, {&liquid_gift, &gas_gift});
+            for (size_t k = 0; k < count; ++k) gas_gift[k].own[3] = -fluids.gas_volume[k] * gas_outflow[k];
+        } else {
+            gather_divergence(grid, nodes_.flux, count, spline, outflow);
+            take_velocity<keeps>(grid, nodes_.liquid_velocity, points_, first, count, spline,
+                                 points_[water_mass] + first, liquid_fields, liquid_gift, liquid_taken);
+        }
         for (size_t k = 0; k < count; ++k) {
             gift[k].own[3] = points_[solid_mass][first + k] * dilation[k];
             liquid_gift[k].own[3] = -points_[point_volume][first + k] * outflow[k];
@@ -432,7 +432,7 @@ void ExplicitMixture<filling>::forget_left_nodes(std::vector<double>& returned) 
 template <Filling filling>
 void ExplicitMixture<filling>::move_gas_nodes(const Grid& old) {
     NodeGas& gas = nodes_.gas;
-    for (auto* field : {&gas.velocity, &gas.flux, &gas.rates, &gas.evening}) move_nodes(*field, old, nodes_.grid);
+    for (auto* field : {&gas.velocities, &gas.fluxes, &gas.evenings}) move_nodes(*field, old, nodes_.grid);
     move_nodes(gas.returned, old, nodes_.grid);
 }
 

@@ -122,11 +122,8 @@ private:
     void share_pores(size_t first, size_t count, FluidBlock& fluids) const;
     void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
     void keep_pressures(size_t first, size_t count, const FluidBlock& fluids);
-    void take_gas(size_t first, size_t count, const SplineBlock& spline);
+    void take_gas(size_t first, size_t count, const VelocityBlock& rates);
     void push_gas(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
-    template <bool keeps>
-    void take_gas_velocity(size_t first, size_t count, const SplineBlock& spline, const BlockValues& volume,
-                           GiftBlock& gift);
     void give_gas(size_t first, size_t count, const SplineBlock& spline, const GiftBlock& gift);
     void forget_left_nodes(std::vector<double>& returned) const;
     void move_gas_nodes(const Grid& old);

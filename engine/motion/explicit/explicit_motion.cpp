@@ -73,7 +73,7 @@ void ExplicitMotion::move_and_give(Strip strip, double dt) {
         double* y = points_[position_y] + first;
         spline.find(nodes_.grid, x, y, count);
         take_velocity<keeps>(nodes_.grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
-                             velocity_x, affine_xx, gift, taken);
+                             {velocity_x, affine_xx}, gift, taken);
         for (size_t k = 0; k < count; ++k) {
             x[k] += dt * taken.x[k];
             y[k] += dt * taken.y[k];

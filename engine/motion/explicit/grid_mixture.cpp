@@ -49,6 +49,7 @@ void NodeGas::resize(size_t nodes) {
     returned.resize(nodes);
     rates.resize(nodes);
     evening.resize(nodes);
+    for (auto* field : {&velocities, &fluxes, &evenings, &both_rates}) field->resize(nodes);
 }
 
 template <bool has_gas>
@@ -114,6 +115,7 @@ void GridMixture<has_gas>::begin_step() {
         }
     });
     mirror();
+    if constexpr (has_gas) for_each_node([this](size_t i) { gas.both_rates[i] = {rates[i], gas.rates[i]}; });
 }
 
 template <bool has_gas>
@@ -123,6 +125,13 @@ void GridMixture<has_gas>::end_step(double dt) {
     for_each_node([this, dt](size_t i) { solve(i, dt); });
     if (!immersed) cross_surface(dt);
     mirror();
+    if constexpr (has_gas) {
+        for_each_node([this](size_t i) {
+            gas.velocities[i] = {liquid_velocity[i], gas.velocity[i]};
+            gas.fluxes[i] = {flux[i], gas.flux[i]};
+            gas.evenings[i] = {evening[i], gas.evening[i]};
+        });
+    }
     flow_time = dt;
     speed = largest_speed();
     for_each_node([this](size_t i) {

@@ -63,6 +63,9 @@ struct NodeGas {
 
     void resize(size_t nodes);
     void clear_flow(size_t node);
+
+    // Of both fluids, as points read them.
+    std::vector<NodePairOfVectors> velocities, fluxes, evenings, both_rates;
 };
 
 /// How the gas at a node answers to forces on it: v_g' = (v_g + response force + drag v_s') / (1 + drag).

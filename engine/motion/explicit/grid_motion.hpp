@@ -19,6 +19,11 @@ struct NodeVector {
     double x = 0, y = 0;
 };
 
+/// Of two fluids, side by side: four numbers are one register.
+struct NodePairOfVectors {
+    NodeVector liquid, gas;
+};
+
 /// What a wall mirrors adds to a vector inside.
 template <class Vector>
 void add_mirrored(Vector& inside, const Mirror& mirror, const Vector& beyond) {

@@ -141,6 +141,42 @@ inline void gather_values(const Grid& grid, const std::vector<NodeVector>& field
     }
 }
 
+/// Two vector fields of the nodes at points: values, and divergences.
+inline void gather_pairs(const Grid& grid, const std::vector<NodePairOfVectors>& field, size_t count,
+                         const SplineBlock& spline, VelocityBlock& liquid, VelocityBlock& gas) {
+    NodePatch<Quad, false> patch(&field.data()->liquid.x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        Quad sum = Quad::Zero();
+        for (size_t j = 0; j < 3; ++j)
+            sum += spline.value_y[j][k] *
+                   (spline.value_x[0][k] * patch.node[j][0] + spline.value_x[1][k] * patch.node[j][1] +
+                    spline.value_x[2][k] * patch.node[j][2]);
+        liquid.x[k] = sum[0];
+        liquid.y[k] = sum[1];
+        gas.x[k] = sum[2];
+        gas.y[k] = sum[3];
+    }
+}
+
+inline void gather_divergences(const Grid& grid, const std::vector<NodePairOfVectors>& field, size_t count,
+                               const SplineBlock& spline, BlockValues& liquid, BlockValues& gas) {
+    NodePatch<Quad, false> patch(&field.data()->liquid.x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        Quad along_x = Quad::Zero(), along_y = Quad::Zero();
+        for (size_t j = 0; j < 3; ++j) {
+            const Quad &v0 = patch.node[j][0], &v1 = patch.node[j][1], &v2 = patch.node[j][2];
+            along_x += spline.value_y[j][k] *
+                       (spline.slope_x[0][k] * v0 + spline.slope_x[1][k] * v1 + spline.slope_x[2][k] * v2);
+            along_y += spline.slope_y[j][k] *
+                       (spline.value_x[0][k] * v0 + spline.value_x[1][k] * v1 + spline.value_x[2][k] * v2);
+        }
+        liquid[k] = along_x[0] + along_y[1];
+        gas[k] = along_x[2] + along_y[3];
+    }
+}
+
 /// A number of the points, to the nodes' sums.
 inline void scatter_value(const Grid& grid, size_t count, const SplineBlock& spline, const BlockValues& value,
                           std::vector<double>& field) {
@@ -166,40 +202,79 @@ struct Gift {
 };
 using GiftBlock = std::array<Gift, block_size>;
 
-/// Takes velocity and its affine part from the nodes (Jiang et al. 2015, ACM Trans. Graph. 34), as the gift that the points will give back.
-/// The points themselves keep it where `keeps`; `x` and `affine` are the first of its two and four fields.
+/// Velocity at a point and its change along x and y over one cell (Jiang et al. 2015, ACM Trans. Graph. 34).
+template <class Value>
+struct AffineVelocity {
+    Value mean = Value::Zero(), along_x = Value::Zero(), along_y = Value::Zero();
+};
+
+template <class Value>
+[[gnu::always_inline]] inline AffineVelocity<Value> affine_velocity(const NodePatch<Value, false>& patch,
+                                                                    const SplineBlock& spline, size_t k) {
+    constexpr double inverse_moment = 4;  // of the splines' second moment, in cells
+    AffineVelocity<Value> at;
+    for (size_t j = 0; j < 3; ++j) {
+        const Value v0 = spline.value_x[0][k] * patch.node[j][0], v1 = spline.value_x[1][k] * patch.node[j][1],
+                    v2 = spline.value_x[2][k] * patch.node[j][2];
+        const Value sum = spline.value_y[j][k] * (v0 + v1 + v2);
+        at.mean += sum;
+        at.along_x += spline.value_y[j][k] * (v2 - v0);
+        if (j == 0) at.along_y -= sum;
+        if (j == 2) at.along_y += sum;
+    }
+    at.along_x = inverse_moment * (at.along_x - spline.offset_x[k] * at.mean);
+    at.along_y = inverse_moment * (at.along_y - spline.offset_y[k] * at.mean);
+    return at;
+}
+
+/// The first of a velocity's two fields and of its affine part's four.
+struct VelocityFields {
+    PointField velocity, affine;
+};
+
+inline void keep_velocity(const AffineVelocity<Pair>& at, double per_metre, FreePoints& points, size_t p,
+                          VelocityFields fields) {
+    points.field[fields.velocity][p] = at.mean[0];
+    points.field[fields.velocity + 1][p] = at.mean[1];
+    points.field[fields.affine][p] = per_metre * at.along_x[0];
+    points.field[fields.affine + 1][p] = per_metre * at.along_y[0];
+    points.field[fields.affine + 2][p] = per_metre * at.along_x[1];
+    points.field[fields.affine + 3][p] = per_metre * at.along_y[1];
+}
+
+/// Takes velocity and its affine part from the nodes, as the gift that the points will give back. The points themselves keep it where `keeps`.
 template <bool keeps>
 void take_velocity(const Grid& grid, const std::vector<NodeVector>& velocity, FreePoints& points, size_t first,
-                   size_t count, const SplineBlock& spline, const double* mass, PointField x, PointField affine,
-                   GiftBlock& gift, VelocityBlock& taken) {
-    constexpr double inverse_moment = 4;  // of the splines' second moment, in cells
+                   size_t count, const SplineBlock& spline, const double* mass, VelocityFields fields, GiftBlock& gift,
+                   VelocityBlock& taken) {
     const double per_metre = 1 / grid.cell_size;
     NodePatch<Pair, false> patch(&velocity.data()->x, grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
-        Pair mean = Pair::Zero(), along_x = Pair::Zero(), along_y = Pair::Zero();
-        for (size_t j = 0; j < 3; ++j) {
-            const Pair v0 = spline.value_x[0][k] * patch.node[j][0], v1 = spline.value_x[1][k] * patch.node[j][1],
-                       v2 = spline.value_x[2][k] * patch.node[j][2];
-            const Pair sum = spline.value_y[j][k] * (v0 + v1 + v2);
-            mean += sum;
-            along_x += spline.value_y[j][k] * (v2 - v0);
-            if (j == 0) along_y -= sum;
-            if (j == 2) along_y += sum;
-        }
-        along_x = inverse_moment * (along_x - spline.offset_x[k] * mean);
-        along_y = inverse_moment * (along_y - spline.offset_y[k] * mean);
-        gift[k].set(mass[k], mean, along_x, along_y);
-        taken.x[k] = mean[0];
-        taken.y[k] = mean[1];
-        if constexpr (keeps) {
-            const size_t p = first + k;
-            points.field[x][p] = mean[0];
-            points.field[x + 1][p] = mean[1];
-            points.field[affine][p] = per_metre * along_x[0];
-            points.field[affine + 1][p] = per_metre * along_y[0];
-            points.field[affine + 2][p] = per_metre * along_x[1];
-            points.field[affine + 3][p] = per_metre * along_y[1];
+        const AffineVelocity<Pair> at = affine_velocity(patch, spline, k);
+        gift[k].set(mass[k], at.mean, at.along_x, at.along_y);
+        taken.x[k] = at.mean[0];
+        taken.y[k] = at.mean[1];
+        if constexpr (keeps) keep_velocity(at, per_metre, points, first + k, fields);
+    }
+}
+
+/// The same of two fluids at once.
+template <bool keeps>
+void take_velocities(const Grid& grid, const std::vector<NodePairOfVectors>& velocity, FreePoints& points, size_t first,
+                     size_t count, const SplineBlock& spline, const std::array<const double*, 2>& mass,
+                     const std::array<VelocityFields, 2>& fields, const std::array<GiftBlock*, 2>& gift) {
+    const double per_metre = 1 / grid.cell_size;
+    NodePatch<Quad, false> patch(&velocity.data()->liquid.x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        const AffineVelocity<Quad> both = affine_velocity(patch, spline, k);
+        const std::array<AffineVelocity<Pair>, 2> at{
+            AffineVelocity<Pair>{both.mean.head<2>(), both.along_x.head<2>(), both.along_y.head<2>()},
+            AffineVelocity<Pair>{both.mean.tail<2>(), both.along_x.tail<2>(), both.along_y.tail<2>()}};
+        for (size_t fluid = 0; fluid < 2; ++fluid) {
+            (*gift[fluid])[k].set(mass[fluid][k], at[fluid].mean, at[fluid].along_x, at[fluid].along_y);
+            if constexpr (keeps) keep_velocity(at[fluid], per_metre, points, first + k, fields[fluid]);
         }
     }
 }
