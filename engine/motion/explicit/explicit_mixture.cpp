@@ -27,6 +27,7 @@ void add_apparent_cohesion(const std::vector<ExplicitHydraulics>& hydraulics, co
 
 /// Air in pores that it left is never thinner than this share of the atmosphere.
 constexpr double least_gas_pressure = 1e-6;
+constexpr double least_room_share = 1e-6;        // of the pores: no point counts less as room for gas
 constexpr double least_gas_permeability = 1e-9;  // where no gas is left, so that nodes may divide by it
 
 using LogValues = Eigen::Map<Eigen::Array<double, block_size, 1>>;  // logarithms of a block at once
@@ -94,6 +95,7 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
       gas_(gas),
       arrangement_(threads) {
     for (const ExplicitSoil& soil : soils_) yields_ = yields_ || soil.yields;
+    for (const ExplicitHydraulics& soil : hydraulics_) grain_volume_.push_back(1 / soil.grain_density);
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
     nodes_.gravity = gravity;
@@ -182,9 +184,12 @@ void ExplicitMixture<filling>::owe_water(Strip strip) {
         for (size_t k = 0; k < count; ++k)
             points_[water_due][first + k] = nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
         if constexpr (has_gas) {
+            BlockValues weight;
+            find_gas_weights(first, count, weight);
             gather_values(nodes_.grid, nodes_.gas.rates, count, spline, rates);
             for (size_t k = 0; k < count; ++k)
-                points_[gas_due][first + k] = gas_gain(first + k, rates.x[k], rates.y[k]);
+                points_[gas_due][first + k] =
+                    nodes_.flow_time * (weight[k] * rates.x[k] + points_[gas_mass][first + k] * rates.y[k]);
         }
     }
 }
@@ -217,10 +222,16 @@ template <Filling filling>
 void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBlock& fluids) const {
     const double specific = gas_.atmosphere / gas_.density;  // R T / M, J/kg
     const PoreFluids pair{water_.bulk_modulus, gas_.atmosphere};
-    BlockValues pores, filled, effective, logit{};
+    BlockValues pores, filled, alone, effective, logit{};
+    find_pores(first, count, pores);
+    const double water_volume = 1 / water_.density;
+    const double* __restrict water = points_[water_mass] + first, * __restrict gas = points_[gas_mass] + first;
     for (size_t k = 0; k < count; ++k) {
-        pores[k] = pores_of(first + k);
-        filled[k] = points_[water_mass][first + k] / (water_.density * pores[k]);
+        const double per_pores = 1 / pores[k];
+        filled[k] = water[k] * water_volume * per_pores;
+        alone[k] = std::max(gas[k] * specific * per_pores, 0.0);
+    }
+    for (size_t k = 0; k < count; ++k) {
         effective[k] = tables_[static_cast<size_t>(points_.soil[first + k])].effective(filled[k]);
         logit[k] = SaturationTable::odds(effective[k]);
     }
@@ -228,9 +239,8 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
     for (size_t k = 0; k < count; ++k) {
         const auto soil = static_cast<size_t>(points_.soil[first + k]);
         const SaturationTable& table = tables_[soil];
-        const double alone = std::max(points_[gas_mass][first + k] * specific / pores[k], 0.0);
         const SharedPores found =
-            talus::share_pores(table, pair, filled[k], alone, table.mixed_at(effective[k], logit[k]));
+            talus::share_pores(table, pair, filled[k], alone[k], table.mixed_at(effective[k], logit[k]));
         fluids.pressure[k] = found.water_pressure;
         fluids.mobility[k] = fluids.full_mobility[k] * found.state.permeability;
         fluids.suction[k] = found.state.suction;
@@ -262,10 +272,32 @@ void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidB
 /// What flowed to the points in the last step.
 template <Filling filling>
 void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const VelocityBlock& rates) {
-    for (size_t k = 0; k < count; ++k) {
-        const size_t p = first + k;
-        points_[gas_mass][p] += restarted_ ? points_[gas_due][p] : gas_gain(p, rates.x[k], rates.y[k]);
+    double* __restrict mass = points_[gas_mass] + first;
+    if (restarted_) {
+        for (size_t k = 0; k < count; ++k) mass[k] += points_[gas_due][first + k];
+        return;
     }
+    BlockValues weight;
+    find_gas_weights(first, count, weight);
+    for (size_t k = 0; k < count; ++k) mass[k] += nodes_.flow_time * (weight[k] * rates.x[k] + mass[k] * rates.y[k]);
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::find_pores(size_t first, size_t count, BlockValues& __restrict pores) const {
+    const double* __restrict volume = points_[point_volume] + first, * __restrict mass = points_[solid_mass] + first;
+    const int32_t* __restrict soil = points_.soil.data() + first;
+    const double* __restrict grain_volume = grain_volume_.data();
+    for (size_t k = 0; k < count; ++k) pores[k] = volume[k] - mass[k] * grain_volume[soil[k]];
+}
+
+/// What points share a gain of gas by: the volume that water without pressure leaves to it, m2.
+template <Filling filling>
+void ExplicitMixture<filling>::find_gas_weights(size_t first, size_t count, BlockValues& __restrict weight) const {
+    const double* __restrict water = points_[water_mass] + first;
+    const double water_volume = 1 / water_.density;
+    find_pores(first, count, weight);
+    for (size_t k = 0; k < count; ++k)
+        weight[k] = std::max(weight[k] - water[k] * water_volume, least_room_share * weight[k]);
 }
 
 /// What pushes the gas of the nodes.
@@ -287,7 +319,7 @@ void ExplicitMixture<filling>::push_gas(size_t first, size_t count, const Spline
 template <Filling filling>
 void ExplicitMixture<filling>::give_gas(size_t first, size_t count, const SplineBlock& spline, const GiftBlock& gift) {
     BlockValues weight;
-    for (size_t k = 0; k < count; ++k) weight[k] = gas_weight(first + k);
+    find_gas_weights(first, count, weight);
     give_momentum(nodes_.grid, count, spline, gift, nodes_.gas.momentum);
     scatter_value(nodes_.grid, count, spline, weight, nodes_.gas.weight);
 }

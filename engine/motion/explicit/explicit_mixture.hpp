@@ -14,7 +14,6 @@
 #include "motion/explicit/transfer.hpp"
 #include "points/free_points.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -48,9 +47,6 @@ struct ExplicitGas {
 
 /// Saturated: every pore is full of water at all times. Unsaturated: the gas is at rest at zero pressure. Three phases: it moves.
 enum class Filling { saturated, unsaturated, three_phase };
-
-/// Of the pores: no point counts less than this as room for gas.
-inline constexpr double least_room_share = 1e-6;
 
 template <Filling filling>
 class ExplicitMixture {
@@ -96,22 +92,11 @@ private:
     };
 
     void arrange_points();
-    [[nodiscard]] double pores_of(size_t p) const {
-        const double grain_density = hydraulics_[static_cast<size_t>(points_.soil[p])].grain_density;
-        return points_[point_volume][p] - points_[solid_mass][p] / grain_density;
-    }
     /// Of the pores, by the point's water; above 1 it is pressed together.
     [[nodiscard]] double share_filled(size_t p) const {
-        return points_[water_mass][p] / (water_.density * pores_of(p));
-    }
-    /// What a point shares gas by: the volume that water without pressure leaves to it, m2.
-    [[nodiscard]] double gas_weight(size_t p) const {
-        const double pores = pores_of(p);
-        return std::max(pores - points_[water_mass][p] / water_.density, least_room_share * pores);
-    }
-    /// Of the last step, kg.
-    [[nodiscard]] double gas_gain(size_t p, double by_weight, double by_mass) const {
-        return nodes_.flow_time * (gas_weight(p) * by_weight + points_[gas_mass][p] * by_mass);
+        const double grain_density = hydraulics_[static_cast<size_t>(points_.soil[p])].grain_density;
+        const double pores = points_[point_volume][p] - points_[solid_mass][p] / grain_density;
+        return points_[water_mass][p] / (water_.density * pores);
     }
     [[nodiscard]] double pore_stress(const FluidBlock& fluids, size_t k) const;
     void find_wave_speed();
@@ -119,6 +104,8 @@ private:
     void even_out(size_t first, size_t count, const SplineBlock& spline, double dt, FluidBlock& fluids);
     void owe_water(Strip strip);
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
+    void find_pores(size_t first, size_t count, BlockValues& pores) const;
+    void find_gas_weights(size_t first, size_t count, BlockValues& weight) const;
     void share_pores(size_t first, size_t count, FluidBlock& fluids) const;
     void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
     void keep_pressures(size_t first, size_t count, const FluidBlock& fluids);
@@ -134,6 +121,7 @@ private:
 
     std::vector<ExplicitSoil> soils_;
     std::vector<ExplicitHydraulics> hydraulics_;
+    std::vector<double> grain_volume_;  // of each soil, m3/kg
     std::vector<SaturationTable> tables_;
     ExplicitWater water_;
     FreePoints points_;
