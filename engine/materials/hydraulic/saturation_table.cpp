@@ -22,7 +22,7 @@ SaturationTable::SaturationTable(const Hydraulics& hydraulics)
     : residual_(hydraulics.retention.residual_saturation),
       maximum_(hydraulics.retention.maximum_saturation),
       rows_(saturation_rows::count),
-      gas_rows_(saturation_rows::count) {
+      mixed_rows_(saturation_rows::count) {
     const HydraulicTable curves(hydraulics);
     chord_pressure_ = -curves.chord();
     const HydraulicState end = curves.at(chord_pressure_);
@@ -30,19 +30,20 @@ SaturationTable::SaturationTable(const Hydraulics& hydraulics)
     chord_effective_ = effective(end.saturation);
     const auto gas_at = [&](double at) { return gas_permeability(hydraulics.retention, -at); };
     chord_gas_permeability_ = gas_at(chord_pressure_);
-    std::vector<double> pressure, permeability, gas;
+    std::vector<double> pressure, permeability, gas, mean;
     for (int i = 0; i < saturation_rows::count; ++i) {
         const double logit = saturation_rows::lowest + i * saturation_rows::spacing;
         const double here = std::min(1 / (1 + std::exp(-logit)), chord_effective_);
         pressure.push_back(curves.pressure_of_saturation(residual_ + here * (maximum_ - residual_)));
         permeability.push_back(curves.at(pressure.back()).permeability);
         gas.push_back(gas_at(pressure.back()));
+        mean.push_back(curves.at(pressure.back()).potential / pressure.back());
     }
     const std::vector<double> pressure_slope = row_slopes(pressure), permeability_slope = row_slopes(permeability),
-                              gas_slope = row_slopes(gas);
+                              gas_slope = row_slopes(gas), mean_slope = row_slopes(mean);
     for (size_t i = 0; i < rows_.size(); ++i) {
         rows_[i] = {pressure[i], pressure_slope[i], permeability[i], permeability_slope[i]};
-        gas_rows_[i] = {gas[i], gas_slope[i]};
+        mixed_rows_[i] = {gas[i], gas_slope[i], mean[i], mean_slope[i]};
     }
 }
 

@@ -23,9 +23,10 @@ public:
 
     /// What pores that also hold moving gas need.
     struct MixedState {
-        double suction;           ///< Pa
-        double permeability;      ///< k_rl, -
-        double gas_permeability;  ///< k_rg, -
+        double suction;            ///< Pa
+        double permeability;       ///< k_rl, -
+        double gas_permeability;   ///< k_rg, -
+        double mean_permeability;  ///< k_rl's mean over the suctions from this one to none, -
     };
     /// Of an effective saturation whose logit, ln(odds()), is known: logarithms of many at once are faster.
     [[nodiscard]] MixedState mixed_at(double effective, double logit) const;
@@ -50,15 +51,15 @@ private:
         double t;  // from it to the next
     };
     [[nodiscard]] static Place place_of(double logit);
-    struct GasRow {
-        double permeability, slope;  // likewise
+    struct MixedRow {
+        double permeability, slope, mean, mean_slope;  // of the gas; mean k_rl; likewise
     };
 
     double residual_, maximum_;
     double chord_pressure_, chord_permeability_, chord_effective_;  // where the chord begins
     double chord_gas_permeability_;
     std::vector<Row> rows_;
-    std::vector<GasRow> gas_rows_;
+    std::vector<MixedRow> mixed_rows_;
 };
 
 namespace saturation_rows {
@@ -89,17 +90,19 @@ inline SaturationTable::Place SaturationTable::place_of(double logit) {
 }
 
 inline SaturationTable::MixedState SaturationTable::mixed_at(double effective, double logit) const {
-    if (effective >= 1) return {0, 1, 0};
+    if (effective >= 1) return {0, 1, 0, 1};
     if (effective >= chord_effective_) {
         const double share = (1 - effective) / (1 - chord_effective_);
-        return {-share * chord_pressure_, 1 - share * (1 - chord_permeability_), share * chord_gas_permeability_};
+        const double lost = share * (1 - chord_permeability_);
+        return {-share * chord_pressure_, 1 - lost, share * chord_gas_permeability_, 1 - 0.5 * lost};
     }
     const auto [row, t] = place_of(logit);
     const Row &a = rows_[row], &b = rows_[row + 1];
-    const GasRow &gas_a = gas_rows_[row], &gas_b = gas_rows_[row + 1];
+    const MixedRow &more_a = mixed_rows_[row], &more_b = mixed_rows_[row + 1];
     return {-hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t).value,
             hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t).value,
-            hermite(gas_a.permeability, gas_b.permeability, gas_a.slope, gas_b.slope, t).value};
+            hermite(more_a.permeability, more_b.permeability, more_a.slope, more_b.slope, t).value,
+            hermite(more_a.mean, more_b.mean, more_a.mean_slope, more_b.mean_slope, t).value};
 }
 
 inline double SaturationTable::suction_slope(double effective, double logit) const {

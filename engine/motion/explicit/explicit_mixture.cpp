@@ -39,7 +39,7 @@ struct FluidGift {
 using FluidGiftBlock = std::array<FluidGift, block_size>;
 
 void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
-                const BlockValues& pressure, const BlockValues& mobility, const BlockValues& full_mobility,
+                const BlockValues& pressure, const BlockValues& mobility, const BlockValues& edge_mobility,
                 FluidGiftBlock& gift) {
     for (size_t k = 0; k < count; ++k) {
         const double whole = pressure[k] + unit_weight * y[k];
@@ -49,7 +49,7 @@ void fill_gifts(size_t count, const double* y, const double* volume, const doubl
         gift[k].value[0] = mass[k] * whole;
         gift[k].value[1] = mass[k] * mobility[k];
         gift[k].value[2] = volume[k];
-        gift[k].value[3] = mass[k] * full_mobility[k];
+        gift[k].value[3] = mass[k] * edge_mobility[k];
     }
 }
 
@@ -199,17 +199,17 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
     for (size_t k = 0; k < count; ++k) {
         const size_t p = first + k;
         const auto soil = static_cast<size_t>(points_.soil[p]);
-        fluids.full_mobility[k] = hydraulics_[soil].mobility;
+        fluids.edge_mobility[k] = hydraulics_[soil].mobility;
         if constexpr (filling == Filling::saturated) {
             fluids.pressure[k] = water_.bulk_modulus * (share_filled(p) - 1);
-            fluids.mobility[k] = fluids.full_mobility[k];
+            fluids.mobility[k] = fluids.edge_mobility[k];
         } else if constexpr (filling == Filling::unsaturated) {
             const double filled = share_filled(p);
             const SaturationTable& table = tables_[soil];
             const SaturationTable::State state = table.at(filled);
             const double excess = std::max(filled / table.maximum() - 1, 0.0);
             fluids.pressure[k] = state.pressure + water_.bulk_modulus * excess;
-            fluids.mobility[k] = fluids.full_mobility[k] * state.permeability;
+            fluids.mobility[k] = fluids.edge_mobility[k] * state.permeability;
             fluids.suction[k] = -state.pressure;
             fluids.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
         }
@@ -242,7 +242,8 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
         const SharedPores found =
             talus::share_pores(table, pair, filled[k], alone[k], table.mixed_at(effective[k], logit[k]));
         fluids.pressure[k] = found.water_pressure;
-        fluids.mobility[k] = fluids.full_mobility[k] * found.state.permeability;
+        fluids.mobility[k] = hydraulics_[soil].mobility * found.state.permeability;
+        fluids.edge_mobility[k] = hydraulics_[soil].mobility * found.state.mean_permeability;
         fluids.suction[k] = found.state.suction;
         fluids.effective_saturation[k] = std::clamp(effective[k], 0.0, 1.0);
         fluids.gas_pressure[k] = found.gas_pressure;
@@ -370,7 +371,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
                       nodes_.force);
         const double* y = points_[position_y] + first;
         fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, fluids.pressure, fluids.mobility,
-                   fluids.full_mobility, gift);
+                   fluids.edge_mobility, gift);
         scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
         scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
         if constexpr (has_gas) {

@@ -87,7 +87,7 @@ private:
     static constexpr bool has_gas = filling == Filling::three_phase;
 
     struct FluidBlock {
-        BlockValues pressure, mobility, full_mobility, suction, effective_saturation;   // of the water
+        BlockValues pressure, mobility, edge_mobility, suction, effective_saturation;   // of the water
         BlockValues saturation, gas_pressure, gas_potential, gas_mobility, gas_volume;  // where it moves
     };
 

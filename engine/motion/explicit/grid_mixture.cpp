@@ -155,7 +155,7 @@ void GridMixture<has_gas>::fold_forces() {
         NodeMeans &mean_in = means[nodes.inside], &mean_out = means[nodes.beyond];
         mean_in.push += mean_out.push;
         mean_in.mobility += mean_out.mobility;
-        mean_in.full_mobility += mean_out.full_mobility;
+        mean_in.edge_mobility += mean_out.edge_mobility;
         mean_in.volume += mean_out.volume;
         mean_out = {};
         if constexpr (has_gas) {
@@ -332,7 +332,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     if (!(edge.distance > 0)) return;
     const double driven = has_gas ? conductance / mean.volume - evened : conductance / mean.volume;
     const double carried = returned[node] - driven * dot(edge.stretched(pushed), outwards);
-    const double drawn = conductance_of(mean.full_mobility) * edge.length * (edge_head - push) / edge.distance;
+    const double drawn = conductance_of(mean.edge_mobility) * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
     if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed);
 }

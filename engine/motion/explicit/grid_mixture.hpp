@@ -32,10 +32,11 @@ struct NodeGradients {
 
 /// Sums over points with the values of the splines.
 struct NodeMeans {
-    double push = 0;           ///< of N m (p + rho_l g y)
-    double mobility = 0;       ///< of N m lambda, lambda = kappa / mu
-    double volume = 0;         ///< of N V
-    double full_mobility = 0;  ///< of N m lambda, were all pores full
+    double push = 0;      ///< of N m (p + rho_l g y)
+    double mobility = 0;  ///< of N m lambda, lambda = kappa / mu
+    double volume = 0;    ///< of N V
+    double edge_mobility =
+        0;  ///< of N m lambda on the way to the edge: of full pores; with gas, the mean over the suctions on it
 };
 
 /// Sums over points of what concerns their gas.
