@@ -225,7 +225,8 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
     BlockValues pores, filled, alone, effective, logit{};
     find_pores(first, count, pores);
     const double water_volume = 1 / water_.density;
-    const double* __restrict water = points_[water_mass] + first, * __restrict gas = points_[gas_mass] + first;
+    const double* __restrict water = points_[water_mass] + first;
+    const double* __restrict gas = points_[gas_mass] + first;
     for (size_t k = 0; k < count; ++k) {
         const double per_pores = 1 / pores[k];
         filled[k] = water[k] * water_volume * per_pores;
@@ -285,7 +286,8 @@ void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const Veloci
 
 template <Filling filling>
 void ExplicitMixture<filling>::find_pores(size_t first, size_t count, BlockValues& __restrict pores) const {
-    const double* __restrict volume = points_[point_volume] + first, * __restrict mass = points_[solid_mass] + first;
+    const double* __restrict volume = points_[point_volume] + first;
+    const double* __restrict mass = points_[solid_mass] + first;
     const int32_t* __restrict soil = points_.soil.data() + first;
     const double* __restrict grain_volume = grain_volume_.data();
     for (size_t k = 0; k < count; ++k) pores[k] = volume[k] - mass[k] * grain_volume[soil[k]];

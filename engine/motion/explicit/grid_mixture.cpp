@@ -91,7 +91,7 @@ void GridMixture<has_gas>::begin_step() {
         move_inside(liquid_momentum[nodes.inside], liquid_momentum[nodes.beyond], mirror);
         if constexpr (has_gas) {
             move_inside(gas.momentum[nodes.inside], gas.momentum[nodes.beyond], mirror);
-            gas.weight[nodes.inside] += gas.weight[nodes.beyond];
+            gas.weight[nodes.inside] += gas.weight[nodes.beyond];  // what is left beyond nobody reads
         }
     });
     for_each_node([this](size_t i) {
@@ -159,6 +159,7 @@ void GridMixture<has_gas>::fold_forces() {
         mean_in.volume += mean_out.volume;
         mean_out = {};
         if constexpr (has_gas) {
+            // What is left beyond the wall nobody reads: begin_step() clears it.
             add_mirrored(gas.gradients[nodes.inside], mirror, gas.gradients[nodes.beyond]);
             GasMeans& gas_in = gas.means[nodes.inside];
             const GasMeans& gas_out = gas.means[nodes.beyond];
@@ -330,8 +331,8 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
         gas.returned[node] = dot(gas.flux[node], gas_outwards);
     }
     if (!(edge.distance > 0)) return;
-    const double driven = has_gas ? conductance / mean.volume - evened : conductance / mean.volume;
-    const double carried = returned[node] - driven * dot(edge.stretched(pushed), outwards);
+    const double carried =
+        returned[node] - (conductance / mean.volume - evened) * dot(edge.stretched(pushed), outwards);
     const double drawn = conductance_of(mean.edge_mobility) * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
     if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed);
