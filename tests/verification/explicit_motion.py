@@ -74,11 +74,17 @@ def standing_wave_rows():
                       abs(omega.imag - exact.imag) / exact.real, 0.02, "1", "Biot 1956, plane waves", clock)
 
 
+def column_run(cells):
+    """Profiles of the paper's column by the explicit method, at its five times, and the clock."""
+    with Clock() as clock:
+        profiles = histories("column_explicit", cells)
+    return profiles, clock
+
+
 def column_rows():
     """The paper's column by the explicit method: within the paper's distance between two methods."""
     reference = read_csv("column.csv")
-    with Clock() as clock:
-        profiles = histories("column_explicit", 25)
+    profiles, clock = column_run(25)
     for profile in profiles:
         at = reference["time_s"] == int(profile["time"])  # the last of them, of the column just filled, is at 600.5 s
         height = numpy.array(profile["height"])
