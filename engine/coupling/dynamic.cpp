@@ -144,6 +144,7 @@ ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
     ExplicitHydraulics hydraulics;
     hydraulics.grain_density = soil.dry_density / (1 - soil.porosity);
     hydraulics.mobility = soil.hydraulics.conductivity.along / (scene.water.density * scene.gravity);
+    if (soil.solid.model != SolidModel::mohr_coulomb) return hydraulics;
     const Strength& strength = soil.solid.strength;
     if (strength.model == StrengthModel::fredlund)
         hydraulics.suction_tangent = tan_degrees(strength.suction_friction_angle);
@@ -268,7 +269,7 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     std::vector<SaturationTable> tables;
     for (const Soil& soil : scene.soils) {
         hydraulics.push_back(explicit_hydraulics(soil, scene));
-        tables.emplace_back(soil.hydraulics);
+        tables.emplace_back(soil.hydraulics, scene.water.bulk_modulus);
     }
     const bool is_net = scene.physics.stress == StressMeasure::net;
     const ExplicitWater water{scene.water.density, scene.water.bulk_modulus,

@@ -149,7 +149,7 @@ void column_explicit(size_t cells) {
         points[stress_yy][p] = -(1800 + 340) * gravity * depth;
         points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
     }
-    auto column = column_of<Filling::unsaturated>(ground, cells, gravity, std::move(points), {SaturationTable(soil)});
+    auto column = column_of<Filling::unsaturated>(ground, cells, gravity, std::move(points), {{soil, ground.bulk_modulus}});
     column.set_rain([](double) { return 1e-4; });
     std::puts("[");
     double now = 0, initial = 0;

@@ -32,7 +32,7 @@ struct LiquidGift {
 using LiquidGiftBlock = std::array<LiquidGift, block_size>;
 
 void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
-                const BlockValues& pressure, const BlockValues& mobility, const BlockValues& full_mobility,
+                const BlockValues& pressure, const BlockValues& permeability, const BlockValues& resistance,
                 LiquidGiftBlock& gift) {
     for (size_t k = 0; k < count; ++k) {
         const double whole = pressure[k] + unit_weight * y[k];
@@ -40,9 +40,9 @@ void fill_gifts(size_t count, const double* y, const double* volume, const doubl
         gift[k].along_x[0] = gift[k].along_y[1] = push;
         gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
         gift[k].value[0] = mass[k] * whole;
-        gift[k].value[1] = mass[k] * mobility[k];
+        gift[k].value[1] = mass[k] * permeability[k];
         gift[k].value[2] = volume[k];
-        gift[k].value[3] = mass[k] * full_mobility[k];
+        gift[k].value[3] = mass[k] * resistance[k];
     }
 }
 
@@ -98,9 +98,9 @@ template <Filling filling>
 void ExplicitMixture<filling>::restart() {
     nodes_.start_grid();
     restarted_ = true;
-    nodes_.rained = nodes_.run_off = nodes_.seepage = 0;
     arrange_points();
     std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
+    nodes_.rained = nodes_.run_off = nodes_.seepage = 0;
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
@@ -124,12 +124,14 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     nodes_.begin_step();
     if (!is_last) return true;
     arrangement_.for_each_strip([this](Strip strip) { owe_water(strip); });
+    if (filling == Filling::unsaturated) find_wave_speed();
     return true;
 }
 
-/// Points pass water on to others around the same nodes, until all have the nodes' head.
+/// Points pass water on to others around the same nodes, until all have the nodes' head. `mass`: where it goes.
 template <Filling filling>
-void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt) {
+void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt,
+                                        PointField mass) {
     WaterBlock water;
     VelocityBlock evening;
     find_water(first, count, water);
@@ -137,7 +139,7 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
     const double unit_weight = nodes_.gravity * water_.density;
     for (size_t k = 0; k < count; ++k) {
         const double head = water.pressure[k] + unit_weight * points_[position_y][first + k];
-        points_[water_mass][first + k] += dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head);
+        points_[mass][first + k] += dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head);
     }
 }
 
@@ -151,7 +153,7 @@ void ExplicitMixture<filling>::owe_water(Strip strip) {
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
         gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
         for (size_t k = 0; k < count; ++k)
-            points_[water_due][first + k] = nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
+            points_[water_due][first + k] += nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
     }
 }
 
@@ -161,16 +163,16 @@ void ExplicitMixture<filling>::find_water(size_t first, size_t count, WaterBlock
         const size_t p = first + k;
         const auto soil = static_cast<size_t>(points_.soil[p]);
         const double filled = share_filled(p);
-        water.full_mobility[k] = hydraulics_[soil].mobility;
+        water.resistance[k] = 1 / hydraulics_[soil].mobility;
         if constexpr (filling == Filling::saturated) {
             water.pressure[k] = water_.bulk_modulus * (filled - 1);
-            water.mobility[k] = water.full_mobility[k];
+            water.permeability[k] = 1;
         } else {
             const SaturationTable& table = tables_[soil];
             const SaturationTable::State state = table.at(filled);
             const double excess = std::max(filled / table.maximum() - 1, 0.0);
             water.pressure[k] = state.pressure + water_.bulk_modulus * excess;
-            water.mobility[k] = water.full_mobility[k] * state.permeability;
+            water.permeability[k] = state.permeability;
             water.suction[k] = -state.pressure;
             water.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
         }
@@ -216,8 +218,8 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         scatter_force(nodes_.grid, count, spline, volume, total_xx.data(), total_yy.data(), points_[stress_xy] + first,
                       nodes_.force);
         const double* y = points_[position_y] + first;
-        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, water.pressure, water.mobility,
-                   water.full_mobility, gift);
+        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, water.pressure, water.permeability,
+                   water.resistance, gift);
         scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
         scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
     }
@@ -236,13 +238,14 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         double* x = points_[position_x] + first;
         double* y = points_[position_y] + first;
         spline.find(grid, x, y, count);
-        if (filling == Filling::unsaturated) even_out(first, count, spline, dt);
         gather_divergence(grid, nodes_.velocity, count, spline, dilation);
         gather_divergence(grid, nodes_.flux, count, spline, outflow);
         take_velocity<keeps>(grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
                              velocity_x, affine_xx, gift, taken);
         take_velocity<keeps>(grid, nodes_.liquid_velocity, points_, first, count, spline, points_[water_mass] + first,
                              liquid_velocity_x, liquid_affine_xx, liquid_gift, liquid_taken);
+        if (keeps) std::fill_n(points_[water_due] + first, count, 0.0);
+        if (filling == Filling::unsaturated) even_out(first, count, spline, dt, keeps ? water_due : water_mass);
         for (size_t k = 0; k < count; ++k) {
             gift[k].own[3] = points_[solid_mass][first + k] * dilation[k];
             liquid_gift[k].own[3] = -points_[point_volume][first + k] * outflow[k];
@@ -286,6 +289,7 @@ void ExplicitMixture<filling>::arrange_points() {
     std::vector<double> returned(nodes_.returned.size(), 0.0);  // none from nodes that points have left
     nodes_.for_each_node([&](size_t i) { returned[i] = nodes_.returned[i]; });
     nodes_.returned = std::move(returned);
+    const double before = nodes_.total_returned();
     if (arrangement_.arrange(points_, nodes_.grid)) {
         for (auto* field : {&nodes_.velocity, &nodes_.liquid_velocity, &nodes_.flux, &nodes_.rates, &nodes_.evening})
             move_nodes(*field, old, nodes_.grid);
@@ -293,6 +297,7 @@ void ExplicitMixture<filling>::arrange_points() {
         nodes_.resize();
     }
     nodes_.spans = arrangement_.spans();
+    nodes_.seepage += nodes_.flow_time * (before - nodes_.total_returned());
     fall_rain();
     find_wave_speed();
 }
@@ -317,6 +322,24 @@ void ExplicitMixture<filling>::fall_rain() {
     }
 }
 
+/// Retention may hold water more stiffly than water is. Bishop's stress feels that; flow does as far as drag lets it, which it is slower by:
+/// half the step that would just be stable is size^2 n / (2 stiffness lambda).
+template <Filling filling>
+typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_stiffness(size_t p,
+                                                                                          double porosity) const {
+    const double bulk_modulus = water_.bulk_modulus;
+    if constexpr (filling == Filling::saturated) return {bulk_modulus, bulk_modulus / water_.density};
+    const auto soil = static_cast<size_t>(points_.soil[p]);
+    const SaturationTable& table = tables_[soil];
+    const double filled = share_filled(p), stiffness = filled * table.stiffness(filled);
+    const bool is_borne = water_.pore_stress == PoreStress::bishop;
+    const double borne = is_borne ? std::clamp(table.effective(filled), 0.0, 1.0) * stiffness : 0.0;
+    const double mobility = hydraulics_[soil].mobility * table.at(filled).permeability;
+    const double creep = 2 * stiffness * mobility / (porosity * nodes_.grid.cell_size);
+    return {std::max(bulk_modulus, borne),
+            std::max(bulk_modulus / water_.density, std::min(stiffness / water_.density, creep * creep))};
+}
+
 /// Of the points as they are: the square root of the sum of the two waves' squares without drag, which bounds both.
 template <Filling filling>
 void ExplicitMixture<filling>::find_wave_speed() {
@@ -326,8 +349,9 @@ void ExplicitMixture<filling>::find_wave_speed() {
         const double solid_density = points_[solid_mass][p] / points_[point_volume][p];
         const double grains = solid_density / hydraulics_[soil].grain_density;
         const double frame = soils_[soil].elastic.lame + 2 * soils_[soil].elastic.shear;
-        const double fluid = water_.bulk_modulus / (1 - grains);
-        const double squares = (frame + grains * grains * fluid) / solid_density + water_.bulk_modulus / water_.density;
+        const PoreStiffness pores = pore_stiffness(p, 1 - grains);
+        const double fluid = pores.borne / (1 - grains);
+        const double squares = (frame + grains * grains * fluid) / solid_density + pores.flow_speed_squared;
         wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
     }
 }

@@ -74,8 +74,14 @@ public:
 
 private:
     struct WaterBlock {
-        BlockValues pressure, mobility, full_mobility, suction, effective_saturation;
+        BlockValues pressure, permeability, resistance, suction, effective_saturation;
     };
+
+    struct PoreStiffness {
+        double borne;               // of what the skeleton bears, Pa
+        double flow_speed_squared;  // m2/s2, of the liquid through the skeleton
+    };
+    [[nodiscard]] PoreStiffness pore_stiffness(size_t p, double porosity) const;
 
     void arrange_points();
     /// Of the pores, by the point's water; above 1 it is pressed together.
@@ -87,7 +93,7 @@ private:
     [[nodiscard]] double pore_stress(const WaterBlock& water, size_t k) const;
     void find_wave_speed();
     void fall_rain();
-    void even_out(size_t first, size_t count, const SplineBlock& spline, double dt);
+    void even_out(size_t first, size_t count, const SplineBlock& spline, double dt, PointField water);
     void owe_water(Strip strip);
     void find_water(size_t first, size_t count, WaterBlock& water) const;
     void stress_and_forces(Strip strip, double dt);
@@ -105,7 +111,7 @@ private:
     bool restarted_ = false;  // and the points not yet got what is due
     bool yields_ = false;     // any soil
     std::function<double(double)> rain_;
-    double wave_speed_ = 0;  // m/s, the fastest when the points were arranged, were all pores full
+    double wave_speed_ = 0;  // m/s, the fastest when the points were arranged or looked at, were all pores full
 };
 
 extern template class ExplicitMixture<Filling::saturated>;

@@ -50,6 +50,10 @@ void GridMixture::begin_step() {
     });
     for_each_node([this](size_t i) {
         const NodeMomentum &solid = momentum[i], &liquid = liquid_momentum[i];
+        if (!(solid.mass > 0)) {  // the last point has left: what came to its node has left with the surface
+            seepage += flow_time * returned[i];
+            returned[i] = 0;
+        }
         const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
         velocity[i] = {solid.x * inverse, solid.y * inverse};
         liquid_velocity[i] = velocity[i];
@@ -85,8 +89,8 @@ void GridMixture::fold_forces() {
         out = {};
         NodeMeans &mean_in = means[nodes.inside], &mean_out = means[nodes.beyond];
         mean_in.push += mean_out.push;
-        mean_in.mobility += mean_out.mobility;
-        mean_in.full_mobility += mean_out.full_mobility;
+        mean_in.permeability += mean_out.permeability;
+        mean_in.resistance += mean_out.resistance;
         mean_in.volume += mean_out.volume;
         mean_out = {};
     });
@@ -94,6 +98,12 @@ void GridMixture::fold_forces() {
 
 bool GridMixture::is_at_edge(size_t node) const {
     return means[node].volume > 0 && means[node].volume < full_share * cell_volume();
+}
+
+double GridMixture::total_returned() const {
+    double sum = 0;
+    for_each_node([&](size_t i) { sum += returned[i]; });
+    return sum;
 }
 
 double GridMixture::facing_up(size_t node) const {
@@ -147,9 +157,10 @@ void GridMixture::solve(size_t node, double dt) {
     if (!(mass > 0) || !(mean.volume > 0)) return;
     const double push = mean.push / mass;
     const double liquid_content = liquid_mass / (liquid_density * mean.volume);
-    const auto drag_of = [&](double mobility) { return dt * liquid_content * mass / (mobility * liquid_density); };
-    const auto conductance_of = [&](double mobility) { return dt * liquid_content / (1 + drag_of(mobility)); };
-    const double drag = drag_of(mean.mobility), conductance = conductance_of(mean.mobility);
+    const double full_drag = dt * liquid_content * mean.resistance / (mass * liquid_density);
+    const double drag = full_drag * mass / mean.permeability;
+    const double conductance = dt * liquid_content / (1 + drag),
+                 full_conductance = dt * liquid_content / (1 + full_drag);
     const double spread = evening_share * conductance * mean.volume / (cell_volume() * mass);
     evening[node] = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
@@ -187,7 +198,7 @@ void GridMixture::solve(size_t node, double dt) {
     returned[node] = dot(flux[node], outwards);
     if (!(edge.distance > 0)) return;
     const double carried = returned[node] - conductance / mean.volume * dot(edge.stretched(pushed), outwards);
-    const double drawn = conductance_of(mean.full_mobility) * edge.length * (edge_head - push) / edge.distance;
+    const double drawn = full_conductance * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
 }
 

@@ -26,10 +26,10 @@ struct NodeGradients {
 
 /// Sums over points with the values of the splines.
 struct NodeMeans {
-    double push = 0;           ///< of N m (p + rho_l g y)
-    double mobility = 0;       ///< of N m lambda, lambda = kappa / mu
-    double volume = 0;         ///< of N V
-    double full_mobility = 0;  ///< of N m lambda, were all pores full
+    double push = 0;          ///< of N m (p + rho_l g y)
+    double permeability = 0;  ///< of N m k_r
+    double volume = 0;        ///< of N V
+    double resistance = 0;    ///< of N m mu / kappa
 };
 
 /// Of a column of the grid: the edge that faces up.
@@ -73,6 +73,7 @@ struct GridMixture : WalledGrid {
     void resize();
     void begin_step();
     void end_step(double dt);
+    [[nodiscard]] double total_returned() const;  ///< kg/s
     [[nodiscard]] double largest_speed() const { return speed_bound(*this, momentum, velocity, least_mass); }
 
 private:
