@@ -261,7 +261,7 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     if (!handover.soil_mass.empty()) keep_mass(handover.soil_mass, seeded.points);
     if (handover.pressure.empty()) {
         return Motion(std::in_place_type<ExplicitMotion>, cell_size, walls, scene.gravity, explicit_soils(scene),
-                      std::move(seeded.points), threads);
+                      std::move(seeded.points), threads, scene.dynamics.rest_speed);
     }
     fill_with_water(scene, mesh, locator, handover.pressure, seeded.cell, seeded.points);
     if (handover.water > 0) keep_water(scene, handover.water, seeded.points);

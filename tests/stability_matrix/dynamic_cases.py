@@ -91,6 +91,9 @@ def strength_cases():
     soil["solid"]["softening"] = softening
     yield Case("dynamic/softens_at_once", dynamic(bank(), [soil], HELD, 0.25), SLIDE)
     yield Case("dynamic/dilation_is_friction", dry_bank(friction=40, dilation=40, cohesion=50), SLIDE)
+    resting = dry_bank(walls=RUBBING)
+    resting["dynamics"]["restSpeed"] = 0.05
+    yield Case("dynamic/held_at_rest", resting, [["step", 0.1, 100]])
     yield Case("dynamic/no_tension", dry_bank(tensile=0.0), SLIDE)
 
 

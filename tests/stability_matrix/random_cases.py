@@ -203,6 +203,8 @@ def moving_section(seed):
         scene["surface"] = rain_zone(draw.log_uniform(0.1, 1000) * MM_PER_HOUR)
         scene["initial"].update(draw.choice(({"flow": "suction", "suction": draw.choice((0.0, draw.log_uniform(1, 1e6)))},
                                              {"flow": "hydrostatic", "waterTable": draw.uniform(-1, 1) * height})))
+    elif draw.choice((True, False)):
+        scene["dynamics"]["restSpeed"] = draw.log_uniform(1e-6, 1)
     duration = draw.log_uniform(*SUBSTEPS) * crossing_time(soils, water, cell_size)
     return scene, [["step", float(f"{duration * draw.uniform(0.01, 0.5):.4g}"), 1] for _ in range(draw.whole(1, 5))]
 

@@ -21,6 +21,7 @@ void GridMotion::begin_step() {
         force[nodes.beyond] = {};
     });
     for_each_node([this](size_t i) {
+        if (!held.empty() && momentum[i].mass > 0) momentum[i].mass += held[i].mass;
         const double inverse = momentum[i].mass > 0 ? 1 / momentum[i].mass : 0;
         velocity[i] = {momentum[i].x * inverse, momentum[i].y * inverse};
     });
@@ -33,6 +34,7 @@ void GridMotion::end_step(double dt) {
         [this](NodePair nodes, const Mirror& sign) { add_mirrored(force[nodes.inside], sign, force[nodes.beyond]); });
     for_each_node([this, dt](size_t i) {
         const double response = momentum[i].mass > 0 ? dt / momentum[i].mass : 0;
+        if (!held.empty()) force[i] = {force[i].x + held[i].x, force[i].y + held[i].y};
         velocity[i].x += response * force[i].x;
         velocity[i].y += response * force[i].y;
     });
