@@ -55,6 +55,19 @@ EquilibriumOutcome Equilibrium::solve(const Loads& loads, double wanted, int32_t
     return outcome;
 }
 
+EquilibriumOutcome Equilibrium::solve_with(Companion& companion, int32_t most_creep_steps) {
+    EquilibriumOutcome outcome;
+    reject();
+    is_at_start_ = false;
+    wanted_ = tolerance;
+    if (!follow(&companion, 0)) return outcome;
+    creep(most_creep_steps, outcome, &companion);
+    finish(outcome);
+    if (outcome.status == EquilibriumStatus::converged && !companion.agrees())
+        outcome.status = EquilibriumStatus::not_converged;
+    return outcome;
+}
+
 EquilibriumOutcome Equilibrium::solve_elastically(const Loads& loads) {
     EquilibriumOutcome outcome;
     start(loads);
@@ -203,23 +216,14 @@ double Equilibrium::volumetric_strain(int32_t cell, std::span<const double> disp
     return displacement_gradient<Line2>(kinematics_.gradient<Line2>(cell, 0), u)(1, 1);
 }
 
-bool Equilibrium::linearise(const Loads& loads) {
-    constexpr double viscosity = 1e-6;  // keeps mechanisms that hardly resist finite
-    start(loads);
-    unbalance();
-    left_ = residual_;
-    EquilibriumOutcome unused;
-    return equations_.count() > 0 && factorise_tangent(viscosity, unused);
-}
-
 std::span<const double> Equilibrium::answer(const Loads& loads) {
     start(loads);
     unbalance();
     for (size_t i = 0; i < direction_.size(); ++i) direction_[i] = residual_[i] - left_[i];
     tangent_.solver->solve(tangent_.matrix, direction_);
-    std::fill(start_.begin(), start_.end(), 0.0);
-    for (size_t i = 0; i < direction_.size(); ++i) start_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
-    return start_;
+    answer_.assign(increment_.size(), 0.0);
+    for (size_t i = 0; i < direction_.size(); ++i) answer_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
+    return answer_;
 }
 
 }  // namespace talus
