@@ -10,7 +10,9 @@
 namespace talus {
 namespace {
 
-constexpr int most_plain_iterations = 8;  // beyond which flow and skeleton are solved for together
+constexpr int most_iterations = 40;
+constexpr int most_plain_iterations =
+    8;  // of ground that yields, beyond which flow and skeleton are solved for together
 // Disagreement of the first iteration at which the next exchange is as long as this one.
 constexpr double well_expected = 100.0;
 
@@ -49,12 +51,14 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
         if (iteration == 0) first_disagreement = disagreement_;
         if (is_found && disagreement_ <= 1.0) break;
         // Under pressures that are not those of the two, ground that yields may find no equilibrium, or one that is farther off.
-        if (!is_found || disagreement_ > first_disagreement || iteration == most_plain_iterations) {
+        const bool yields = outcome_.yielding > 0;
+        if (!is_found || (yields && (disagreement_ > first_disagreement || iteration == most_plain_iterations))) {
             const Exchange result = settle_jointly(duration, path, cancelled);
             if (result != Exchange::agreed) return result;
             first_disagreement = forecast_error_;
             break;
         }
+        if (iteration == most_iterations) return Exchange::disagreed;
         correct_expectation();
         expect_skeleton_at(duration, end_volume_, end_stress_);
     }
