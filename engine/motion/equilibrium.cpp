@@ -1,5 +1,7 @@
 #include "motion/equilibrium.hpp"
 
+#include "motion/stability.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -214,6 +216,11 @@ double Equilibrium::volumetric_strain(int32_t cell, std::span<const double> disp
     if (mesh_.dimension == 2) return mean_dilatation<Quad4>(kinematics_, cell, displacement.data());
     const auto u = gather_increment<Line2>(kinematics_.stencil(cell), displacement.data());
     return displacement_gradient<Line2>(kinematics_.gradient<Line2>(cell, 0), u)(1, 1);
+}
+
+bool Equilibrium::is_stable(const Loads& loads) const {
+    if (mesh_.dimension == 1 || equations_.count() == 0) return true;
+    return talus::is_stable(kinematics_, points_, loads.pore_stress, equations_.number, elastic_.matrix);
 }
 
 std::span<const double> Equilibrium::answer(const Loads& loads) {

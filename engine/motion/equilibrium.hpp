@@ -87,6 +87,9 @@ public:
     /// Within Companion::guide(): the change of the displacement (nodes x dimension, m) under loads that hardly differ, to first order.
     std::span<const double> answer(const Loads& loads);
 
+    /// Whether the ground, without yield, comes back from a nudge: it does not where its stress outweighs its stiffness.
+    [[nodiscard]] bool is_stable(const Loads& loads) const;
+
     [[nodiscard]] double least_factor_of_safety() const { return skeleton_.least_factor_of_safety(); }
 
 private:
