@@ -15,13 +15,12 @@ constexpr double like_steps = 0.2;        // relative difference of two time ste
 constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more has little left to gain,
 constexpr double gaining = 0.5;      // and nothing where it leaves more than this of the residuals
 
-// Infinite where a node stopped at the surface's kink or leaves it, on whose other side its slopes are others.
+// Infinite where a node came to the surface's kink, on whose other side its slopes are others.
 double largest_relative_change(std::span<const double> pressure, std::span<const double> change,
                                std::span<const double> reached) {
     double largest = 0;
     for (size_t i = 0; i < pressure.size(); ++i) {
-        if ((pressure[i] != 0 && reached[i] == 0) || (pressure[i] == 0 && reached[i] < 0))
-            return std::numeric_limits<double>::infinity();
+        if ((pressure[i] > 0) != (reached[i] > 0)) return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(change[i]) / (1.0 + std::abs(pressure[i])));
     }
     return largest;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -219,7 +220,7 @@ void FlowSystem::evaluate_surface(std::span<const double> pressure, std::span<co
         }
         inflow_[node] += rain;
         const double p = pressure[node];
-        if (p < 0) continue;  // at 0 the slopes are a pond's: so steep that they lead no farther than the water reaches
+        if (p <= 0) continue;
         stored_[node] += surface.pond_area * std::min(p, pond_pressure) / unit_weight;
         if (p < pond_pressure) stored_slope_[node] += surface.pond_area / unit_weight;
         if (p <= pond_pressure) continue;
@@ -357,13 +358,14 @@ const HydraulicTable& FlowSystem::storing_table(size_t node, double pressure) co
 // Brenner & Cances (2017): Newton in the variable whose curves are straight. Below the steepest point of the retention that is the
 // saturation, above it the pressure; the two join with the slope of that point. A node that dries stops at saturation first, where the
 // curves show their unsaturated slopes: those above it are flat and lead too far. So dry that water yields by its compressibility rather
-// than by leaving, it is the pressure again. A wet surface node stops at 0 from either side: a pond stores 1e5 times what compressing the
-// water below it does, and leads back as far as that led beyond.
+// than by leaving, it is the pressure again. A wet surface node stops where a pond begins, with the slopes of the pond: it stores 1e5 times what
+// compressing the water below it does, which leads far beyond.
 double FlowSystem::moved(size_t node, double pressure, double change) const {
     const HydraulicTable& table = storing_table(node, pressure);
     const double turn = table.switch_pressure();
     if (pressure > 0 && pressure + change < 0) return 0.0;
-    if (pressure >= turn && pressure < 0 && pressure + change > 0 && surface_node_[node] != 0) return 0.0;
+    if (pressure >= turn && pressure <= 0 && pressure + change > 0 && surface_node_[node] != 0)
+        return std::numeric_limits<double>::min();
     constexpr double straight = 1e-3;  // the curves are so over this share of the suction
     if (pressure >= turn && pressure + change >= turn) return pressure + change;
     if (std::abs(change) < straight * std::abs(pressure)) return pressure + change;
