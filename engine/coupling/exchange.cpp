@@ -11,8 +11,8 @@ namespace talus {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int most_plain_iterations =
-    8;  // of ground that yields, beyond which flow and skeleton are solved for together
+// Of ground that yields, beyond which flow and skeleton are solved for together.
+constexpr int most_plain_iterations = 8;
 // Disagreement of the first iteration at which the next exchange is as long as this one.
 constexpr double well_expected = 100.0;
 
