@@ -327,16 +327,21 @@ bool DynamicGround::move(Moving& motion, double from, double until, const Cancel
         if (rests_) break;
     }
     time_ = time;
+    check_numbers();
     return true;
+}
+
+/// Of the last substep: another one would not do with what is no number.
+void DynamicGround::check_numbers() const {
+    for (const PointField name :
+         {position_x, position_y, velocity_x, velocity_y, stress_xx, stress_yy, stress_zz, stress_xy, point_volume}) {
+        if (!is_finite(points(), name)) stop(time_, "the state of the ground came to no number");
+    }
 }
 
 template <class Moving>
 void DynamicGround::look(const Moving& motion, double time) {
     const FreePoints& points = motion.points();
-    for (const PointField name :
-         {position_x, position_y, velocity_x, velocity_y, stress_xx, stress_yy, stress_zz, stress_xy, point_volume}) {
-        if (!is_finite(points, name)) stop(time, "the state of the ground came to no number");
-    }
     check_pores(time);
     if (static_cast<double>(motion.grid().nodes()) > most_nodes)
         stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");

@@ -189,7 +189,7 @@ void ExplicitMotion::find_wave_speed() {
 double ExplicitMotion::critical_step() const {
     constexpr double share =
         0.5;  // energy is kept within 1 % over a period of 200 cells' length (docs/verification.md)
-    return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.largest_speed());
+    return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.start_speed);
 }
 
 Energies energies_of(const FreePoints& points, const std::vector<ExplicitSoil>& soils, double gravity) {
