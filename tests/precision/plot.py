@@ -36,8 +36,9 @@ def draw_marks(axes, rows, result, cost, quantity):
 
 
 def label_ticks(axis):
-    """1, 2 and 5 of each decade: the range may be less than one."""
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    """Decades, or 1, 2 and 5 of each where there are few of them."""
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 300 * low else (1,)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 
