@@ -380,6 +380,7 @@ uint64_t Engine::hash() const {
     const FreePoints& points = state_->simulation.dynamic()->points();
     for (const auto& field : points.field) mix(field);
     mix({points.number.begin(), points.number.end()});
+    mix({points.quiet.begin(), points.quiet.end()});
     return hash;
 }
 

@@ -145,6 +145,7 @@ ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
     hydraulics.grain_density = soil.dry_density / (1 - soil.porosity);
     hydraulics.mobility = soil.hydraulics.conductivity.along / (scene.water.density * scene.gravity);
     hydraulics.gas_mobility = hydraulics.mobility / scene.gas.viscosity_ratio;
+    if (soil.solid.model != SolidModel::mohr_coulomb) return hydraulics;
     const Strength& strength = soil.solid.strength;
     if (strength.model == StrengthModel::fredlund)
         hydraulics.suction_tangent = tan_degrees(strength.suction_friction_angle);
@@ -272,7 +273,7 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     if (!handover.soil_mass.empty()) keep_mass(handover.soil_mass, seeded.points);
     if (handover.pressure.empty()) {
         return Motion(std::in_place_type<ExplicitMotion>, cell_size, walls, scene.gravity, explicit_soils(scene),
-                      std::move(seeded.points), threads);
+                      std::move(seeded.points), threads, scene.dynamics.rest_speed);
     }
     fill_with_water(scene, mesh, locator, handover.pressure, seeded.cell, seeded.points);
     if (handover.water > 0) keep_water(scene, handover.water, seeded.points);
@@ -280,7 +281,7 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     std::vector<SaturationTable> tables;
     for (const Soil& soil : scene.soils) {
         hydraulics.push_back(explicit_hydraulics(soil, scene));
-        tables.emplace_back(soil.hydraulics);
+        tables.emplace_back(soil.hydraulics, scene.water.bulk_modulus);
     }
     const bool is_net = scene.physics.stress == StressMeasure::net;
     const ExplicitWater water{scene.water.density, scene.water.bulk_modulus,
@@ -348,16 +349,21 @@ bool DynamicGround::move(Moving& motion, double from, double until, const Cancel
         if (rests_) break;
     }
     time_ = time;
+    check_numbers();
     return true;
+}
+
+/// Of the last substep: another one would not do with what is no number.
+void DynamicGround::check_numbers() const {
+    for (const PointField name :
+         {position_x, position_y, velocity_x, velocity_y, stress_xx, stress_yy, stress_zz, stress_xy, point_volume}) {
+        if (!is_finite(points(), name)) stop(time_, "the state of the ground came to no number");
+    }
 }
 
 template <class Moving>
 void DynamicGround::look(const Moving& motion, double time) {
     const FreePoints& points = motion.points();
-    for (const PointField name :
-         {position_x, position_y, velocity_x, velocity_y, stress_xx, stress_yy, stress_zz, stress_xy, point_volume}) {
-        if (!is_finite(points, name)) stop(time, "the state of the ground came to no number");
-    }
     check_pores(time);
     if (static_cast<double>(motion.grid().nodes()) > most_nodes)
         stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");

@@ -89,6 +89,7 @@ private:
     bool move(Moving& motion, double from, double until, const Cancelled& cancelled);
     template <class Moving>
     void look(const Moving& motion, double time);
+    void check_numbers() const;
     void check_pores(double time) const;
 
     std::vector<ExplicitSoil> soils_;

@@ -1,9 +1,9 @@
 // One exchange between flow and motion.
 #include "coupling/simulation.hpp"
+#include "coupling/stopwatch.hpp"
 #include "points/quadrature.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -11,25 +11,10 @@ namespace talus {
 namespace {
 
 constexpr int most_iterations = 40;
-// Between these, flow and skeleton are solved for together; where that does not settle either, what the others need is patience.
-constexpr int first_joint_iteration = 8;
-constexpr int last_joint_iteration = 23;
-// Of the skeleton's equilibrium meanwhile: nearly nothing may hold ground that yields.
-constexpr double joint_residual = 1e-12;
+// Of ground that yields, beyond which flow and skeleton are solved for together.
+constexpr int most_plain_iterations = 8;
 // Disagreement of the first iteration at which the next exchange is as long as this one.
 constexpr double well_expected = 100.0;
-
-class Stopwatch {
-public:
-    explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-    ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-    double& seconds_;
-    std::chrono::steady_clock::time_point start_;
-};
 
 // How much longer the next exchange may be: the expectation is linear in time, its error quadratic in the exchange's length.
 double growth(double first_disagreement) {
@@ -42,57 +27,60 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     const bool moves = skeleton_moves();
     // No forecast that errs may keep exchanges short.
     const double least_growth = is_short ? 2.0 : 0.0;
-    FlowState flow = state_.flow;
-    FlowWatch watch = state_.watch;
-    std::vector<Happening> noticed;
+    FlowPath path{state_.flow, state_.watch, {}};
     double first_disagreement = 0;
     if (flow_) {
         set_flow_forcing(duration);
         expect_skeleton(duration);
     }
     ++counts.exchanges;
-    joint_step_.length = 0;
     for (int iteration = 0;; ++iteration) {
-        const bool is_plain = iteration < first_joint_iteration || iteration > last_joint_iteration;
-        if (iteration == last_joint_iteration + 1) acceleration_.restart();
-        if (iteration == most_iterations) return Exchange::disagreed;
         ++counts.exchange_iterations;
         if (flow_) {
-            const Stopwatch stopwatch(counts.seconds_flow);
-            flow = state_.flow;
-            watch = state_.watch;
-            noticed.clear();
-            const auto after_substep = [&](double t, std::span<const double> pressure) {
-                notice(state_.time + t, pressure, watch, noticed);
-                return cancelled(t);
-            };
-            const AdvanceResult result = integrator_->advance(flow, duration, after_substep);
+            const AdvanceResult result = advance_flow(duration, path, cancelled);
             if (result == AdvanceResult::cancelled) return Exchange::cancelled;
             if (result == AdvanceResult::failed) return Exchange::flow_stopped;
         }
         if (!moves) break;
-        outcome_ = find_equilibrium(flow, state_.time + duration, is_plain ? Equilibrium::tolerance : joint_residual);
-        if (outcome_.status != EquilibriumStatus::converged && !is_plain && halve_joint_step()) {
-            expect_skeleton_at(duration, end_volume_, end_stress_);
-            continue;
-        }
-        if (outcome_.status != EquilibriumStatus::converged) {
-            return outcome_.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost
-                                                                        : Exchange::disagreed;
-        }
+        outcome_ = find_equilibrium(path.flow, state_.time + duration);
         if (cancelled(duration)) return Exchange::cancelled;
+        const bool is_found = outcome_.status == EquilibriumStatus::converged;
+        if (!flow_ && !is_found) return end_without(outcome_);
         if (!flow_) break;
-        compare_pore_volumes(flow);
+        if (is_found) compare_pore_volumes(path.flow);
         if (iteration == 0) first_disagreement = disagreement_;
-        if (disagreement_ <= 1.0) break;
-        if (is_plain || !correct_jointly(flow, duration)) correct_expectation();
+        if (is_found && disagreement_ <= 1.0) break;
+        // Under pressures that are not those of the two, ground that yields may find no equilibrium, or one that is farther off.
+        const bool yields = outcome_.yielding > 0;
+        if (!is_found || (yields && (disagreement_ > first_disagreement || iteration == most_plain_iterations))) {
+            const Exchange result = settle_jointly(duration, path, cancelled);
+            if (result != Exchange::agreed) return result;
+            first_disagreement = forecast_error_;
+            break;
+        }
+        if (iteration == most_iterations) return Exchange::disagreed;
+        correct_expectation();
         expect_skeleton_at(duration, end_volume_, end_stress_);
     }
-    accept(duration, flow);
-    state_.watch = watch;
-    happenings.insert(happenings.end(), noticed.begin(), noticed.end());
+    accept(duration, path.flow);
+    state_.watch = path.watch;
+    happenings.insert(happenings.end(), path.noticed.begin(), path.noticed.end());
     if (flow_ && moves) state_.exchange_step = duration * std::max(growth(first_disagreement), least_growth);
     return Exchange::agreed;
+}
+
+Simulation::Exchange Simulation::end_without(const EquilibriumOutcome& outcome) {
+    return outcome.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost : Exchange::disagreed;
+}
+
+AdvanceResult Simulation::advance_flow(double duration, FlowPath& path, const Cancelled& cancelled) {
+    const Stopwatch stopwatch(counts.seconds_flow);
+    path = {state_.flow, state_.watch, {}};
+    const auto after_substep = [&](double t, std::span<const double> pressure) {
+        notice(state_.time + t, pressure, path.watch, path.noticed);
+        return cancelled(t);
+    };
+    return integrator_->advance(path.flow, duration, after_substep);
 }
 
 void Simulation::set_flow_forcing(double duration) {
@@ -146,6 +134,8 @@ void Simulation::expect_skeleton(double duration) {
         end_stress_[i] = start_stress_[i] + (stands ? 0.0 : state_.pore_stress_rate[i] * duration);
         if (stands) flow_->skeleton.softness[i] = 0.0;
     }
+    forecast_volume_ = end_volume_;
+    forecast_stress_ = end_stress_;
     acceleration_.restart();
     expect_skeleton_at(duration, end_volume_, end_stress_);
 }
@@ -158,10 +148,10 @@ void Simulation::expect_skeleton_at(double duration, std::span<const double> vol
     }
 }
 
-EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double until, double residual) {
+EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double until) {
     const Stopwatch stopwatch(counts.seconds_motion);
     set_loads(flow, until);
-    const EquilibriumOutcome outcome = equilibrium_->solve(loads(), residual);
+    const EquilibriumOutcome outcome = equilibrium_->solve(loads());
     counts.motion_iterations += outcome.iterations;
     return outcome;
 }
@@ -180,7 +170,7 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
                 strain * flow_->network.corner_volume[corner];
         }
     }
-    disagreement_ = 0;
+    disagreement_ = forecast_error_ = 0;
     flow_->evaluate(0.0, flow.pressure);  // for the capacity
     for (size_t i = 0; i < portions.size(); ++i) {
         const double pressure = flow.pressure[static_cast<size_t>(portions[i].node)];
@@ -190,6 +180,8 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
         const double storage =
             found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + skeleton.softness[i];
         disagreement_ = std::max(disagreement_, std::abs(found[i] - taken) / (storage * agreement_pressure_));
+        const double forecast = forecast_volume_[i] + skeleton.softness[i] * (stress - forecast_stress_[i]);
+        forecast_error_ = std::max(forecast_error_, std::abs(found[i] - forecast) / (storage * agreement_pressure_));
         correction_[i] = (found[i] - taken) / skeleton.softness[i];
         end_stress_[i] = stress;
         taken_volume_[i] = taken;

@@ -92,7 +92,7 @@ void Simulation::make_flow() {
     flow_->skeleton.projection.resize(flow_->network.neighbours.size());
     state_.flow_pore_volume = state_.pore_volume;
     for (auto* field : {&state_.pore_volume_rate, &state_.pore_stress_rate, &start_stress_, &end_stress_, &end_volume_,
-                        &taken_volume_, &found_volume_, &portion_stress_, &correction_, &gap_, &joint_step_.change})
+                        &taken_volume_, &found_volume_, &portion_stress_, &correction_})
         field->assign(portions, 0.0);
     acceleration_ = Anderson(portions);
     point_pressure_.resize(points);
@@ -266,7 +266,14 @@ void Simulation::set_initial_stress() {
     for (const GivenDisplacement& given : given_displacements_) prescribed_displacement_[given.freedom] = 0;
     const Loads loads{point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_};
     outcome_ = find_initial_stress(loads);
-    if (outcome_.status == EquilibriumStatus::converged) return;
+    if (outcome_.status == EquilibriumStatus::converged) {
+        if (scene_.physics.regime != MotionRegime::dynamic && !equilibrium_->is_stable(loads)) {
+            throw Error(Status::invalid_scene,
+                        "initial.stress: the ground is too soft to stay in equilibrium under its own weight: a nudge, "
+                        "however small, would grow");
+        }
+        return;
+    }
     const auto [x, y] = outcome_.collapse.place;
     const std::string where = " at (" + value_text(x) + ", " + value_text(y) + ") m";
     if (outcome_.status == EquilibriumStatus::no_equilibrium) {

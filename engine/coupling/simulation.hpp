@@ -90,6 +90,11 @@ private:
     void lie_still(double until);
     [[nodiscard]] double rain_at(double x, double time) const;  ///< m/s, 0 where no zone is
 
+    struct FlowPath {  // of one advance: where it ends, and what was noticed on the way
+        FlowState flow;
+        FlowWatch watch;
+        std::vector<Happening> noticed;
+    };
     enum class Exchange { agreed, cancelled, disagreed, flow_stopped, equilibrium_lost };
 
     // initial state (initial.cpp)
@@ -106,6 +111,8 @@ private:
 
     // the exchange (exchange.cpp)
     Exchange exchange(double duration, bool is_short, const Cancelled& cancelled);
+    [[nodiscard]] static Exchange end_without(const EquilibriumOutcome& outcome);
+    AdvanceResult advance_flow(double duration, FlowPath& path, const Cancelled& cancelled);
     [[nodiscard]] bool skeleton_moves() const { return equilibrium_ && !state_.equilibrium_lost; }
     void shorten_exchange(double duration, double whole, const std::string& problem);
     void lose_equilibrium();
@@ -116,23 +123,13 @@ private:
     void compare_pore_volumes(const FlowState& flow);
     void correct_expectation();
     // the two together (joint.cpp)
-    bool correct_jointly(const FlowState& flow, double duration);
-    bool linearise_jointly(const FlowState& flow, double duration);
-    bool start_joint_step(const FlowState& flow, double duration);
-    bool halve_joint_step();
-    void cut_joint_step(const FlowState& flow, double duration);
-    double work_slope(const FlowState& flow, double duration);
-    [[nodiscard]] bool is_far_enough(std::span<const double> gap) const;
-    [[nodiscard]] double work(std::span<const double> volume) const;
-    void add_water(const FlowState& flow, std::span<const double> volume, double sign, Eigen::VectorXd& sum) const;
-    void answer_water(Eigen::VectorXd& water);
-    void answer_pressures(const FlowState& flow, double duration, std::span<const double> change,
-                          std::span<double> answer);
+    class Water;
+    Exchange settle_jointly(double duration, FlowPath& path, const Cancelled& cancelled);
     [[nodiscard]] Loads loads() const {
         return {point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_};
     }
     void accept(double duration, const FlowState& flow);
-    EquilibriumOutcome find_equilibrium(const FlowState& flow, double until, double residual);
+    EquilibriumOutcome find_equilibrium(const FlowState& flow, double until);
     // what passes between them (loads.cpp)
     void set_loads(const FlowState& flow, double until);
     [[nodiscard]] double porosity(size_t point) const;
@@ -180,20 +177,11 @@ private:
     std::vector<double> found_volume_;  // per portion, m3, as the skeleton found it
     std::vector<double> correction_;    // per portion, Pa: of what is expected of the skeleton
     Anderson acceleration_{0};
-    struct JointStep {
-        std::vector<double> taken_volume, stress;  // per portion, where it starts
-        std::vector<double> change;                // per portion, m3, of the expected volume
-        std::vector<double> pressure;              // per node, Pa, what that changes the pressures by
-        double disagreement = 0;                   // where it starts
-        double work = 0;                           // J, of the gap there on the change of the pressures
-        double length = 0;                         // gone; 0: none
-        double shortest = 0, longest = 1;          // between which the kink lies
-        int cuts = 0;
-    } joint_step_;
-    std::vector<double> gap_;                     // per portion, m3
-    SparseMatrix joint_matrix_, storage_matrix_;  // the flow's
-    std::unique_ptr<KluSolver> joint_solver_;     // empty: not needed yet
-    double disagreement_ = 0;  // largest difference of the two's pore volumes, over the one that is let stand
+    SparseMatrix joint_matrix_, storage_matrix_;             // the flow's
+    std::unique_ptr<KluSolver> joint_solver_;                // empty: not needed yet
+    std::vector<double> forecast_volume_, forecast_stress_;  // the first of end_volume_ and end_stress_
+    double forecast_error_ = 0;  // largest difference of what the skeleton found and that, as that of the disagreement
+    double disagreement_ = 0;    // largest difference of the two's pore volumes, over the one that is let stand
     std::vector<double> point_pore_stress_, point_density_, node_force_, prescribed_displacement_;
     std::vector<ShearStrength> point_strength_;
     std::vector<double> initial_volume_;       // per point, m3

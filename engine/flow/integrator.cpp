@@ -54,9 +54,10 @@ struct FlowIntegrator::Arkode {
     double tolerance;
     double pressure_tolerance;
     SUNContext context = nullptr;
-    N_Vector variables = nullptr;  // stored water of every node, then the totals
+    N_Vector variables = nullptr;  // water gained by every node since the advance began, then the totals
     SUNNonlinearSolver nonlinear_solver = nullptr;
     void* memory = nullptr;
+    std::vector<double> initial;   // stored water where the advance began, m3
     std::vector<double> accepted;  // pressures at the last finished substep
     std::vector<double> stage;     // pressures at the last stage solved
     double stage_time = 0;
@@ -130,8 +131,9 @@ FlowIntegrator::Arkode::~Arkode() {
 
 void FlowIntegrator::Arkode::start(const FlowState& state) {
     double* y = N_VGetArrayPointer(variables);
-    std::copy(state.stored.begin(), state.stored.end(), y);
-    std::copy(state.totals.begin(), state.totals.end(), y + state.stored.size());
+    initial = state.stored;
+    std::fill(y, y + initial.size(), 0.0);
+    std::copy(state.totals.begin(), state.totals.end(), y + initial.size());
     accepted = state.pressure;
     solver.forget();
     system.evaluate(0.0, accepted);  // for the error weights
@@ -186,7 +188,7 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
     if (ARKStepGetNonlinearSystemData(memory, &t, &predicted, &value, &rate, &gamma, &known, &user) != 0) return -1;
     const double* before = N_VGetArrayPointer(predicted);
     const double* change = N_VGetArrayPointer(known);
-    for (size_t i = 0; i < target.size(); ++i) target[i] = before[i] + change[i];
+    for (size_t i = 0; i < target.size(); ++i) target[i] = initial[i] + (before[i] + change[i]);
     if (stage_time <= accepted_time || stage_time >= t) stage = accepted;
     if (!solver.solve(t, gamma, target, accuracy(t, gamma), stage)) {
         if (is_end(t)) ++refusals;
@@ -204,7 +206,7 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
         }
         const double through_boundary = (system.stored()[i] - target[i]) / gamma - system.inflow()[i];
         rates[through_boundary > 0 ? inflow_total : drained_total] += std::abs(through_boundary);
-        z[i] = system.stored()[i] - before[i];
+        z[i] = system.stored()[i] - initial[i] - before[i];
     }
     for (size_t k = 0; k < flow_total_count; ++k) z[target.size() + k] = change[target.size() + k] + gamma * rates[k];
     return SUN_NLS_SUCCESS;
@@ -242,7 +244,7 @@ AdvanceResult FlowIntegrator::advance(FlowState& state, double duration, const A
     statistics_.iterations += ark.solver.iterations() - iterations_before;
 
     const double* y = N_VGetArrayPointer(ark.variables);
-    std::copy(y, y + state.stored.size(), state.stored.begin());
+    for (size_t i = 0; i < state.stored.size(); ++i) state.stored[i] += y[i];
     std::copy(y + state.stored.size(), y + state.stored.size() + flow_total_count, state.totals.begin());
     state.pressure = ark.accepted;
     return result;

@@ -1,8 +1,9 @@
 // Time integration of the flow by ARKODE of SUNDIALS: a singly diagonally implicit Runge-Kutta pair, its step adapted to a tolerance.
 //
-// ARKODE's variable is the water stored at each node (and the running totals of what crossed the ground's edge), so every step, stage and
-// error test conserves water by construction. The pressures behind the stored water are found by StageSolver, which ARKODE sees as its
-// nonlinear solver; the stage derivative is deduced from the stage value, never evaluated anew.
+// ARKODE's variable is the water that each node gained since the advance began (and the running totals of what crossed the ground's edge),
+// so every step, stage and error test conserves water by construction, and what many substeps round off is small beside what moved, not
+// beside what is stored. The pressures behind the stored water are found by StageSolver, which ARKODE sees as its nonlinear solver; the
+// stage derivative is deduced from the stage value, never evaluated anew.
 #pragma once
 
 #include "flow/stage_solver.hpp"

@@ -15,10 +15,14 @@ constexpr double like_steps = 0.2;        // relative difference of two time ste
 constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more has little left to gain,
 constexpr double gaining = 0.5;      // and nothing where it leaves more than this of the residuals
 
-double largest_relative_change(std::span<const double> pressure, std::span<const double> change) {
+// Infinite where a node came to the surface's kink, on whose other side its slopes are others.
+double largest_relative_change(std::span<const double> pressure, std::span<const double> change,
+                               std::span<const double> reached) {
     double largest = 0;
-    for (size_t i = 0; i < pressure.size(); ++i)
+    for (size_t i = 0; i < pressure.size(); ++i) {
+        if ((pressure[i] > 0) != (reached[i] > 0)) return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(change[i]) / (1.0 + std::abs(pressure[i])));
+    }
     return largest;
 }
 
@@ -89,7 +93,7 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
             if (merit_ < merit) break;
         }
         is_stale = !(merit_ < good_contraction * merit);
-        const bool is_round_off = is_fresh && largest_relative_change(pressure, change_) < round_off;
+        const bool is_round_off = is_fresh && largest_relative_change(pressure, change_, trial_) < round_off;
         if (!(merit_ < merit) &&
             (is_round_off || !is_fresh || was_met)) {  // back, and anew where the old factors led nowhere
             error = residual(t, step, target, pressure, beyond_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -29,6 +30,8 @@ FlowSystem::FlowSystem(const Scene& scene, int32_t nodes, Network network_in, Fl
     const auto count = static_cast<size_t>(nodes);
     held_node_.assign(count, 0);
     for (const HeldNode& held : boundaries.held) held_node_[static_cast<size_t>(held.node)] = 1;
+    surface_node_.assign(count, 0);
+    for (const SurfaceNode& surface : boundaries.surface) surface_node_[static_cast<size_t>(surface.node)] = 1;
     for (auto* array : {&stored_, &inflow_, &stored_slope_, &inflow_slope_, &node_pore_volume_})
         array->assign(count, 0.0);
     state_.resize(network.portions.size());
@@ -355,11 +358,14 @@ const HydraulicTable& FlowSystem::storing_table(size_t node, double pressure) co
 // Brenner & Cances (2017): Newton in the variable whose curves are straight. Below the steepest point of the retention that is the
 // saturation, above it the pressure; the two join with the slope of that point. A node that dries stops at saturation first, where the
 // curves show their unsaturated slopes: those above it are flat and lead too far. So dry that water yields by its compressibility rather
-// than by leaving, it is the pressure again.
+// than by leaving, it is the pressure again. A wet surface node stops where a pond begins, with the slopes of the pond: it stores 1e5 times what
+// compressing the water below it does, which leads far beyond.
 double FlowSystem::moved(size_t node, double pressure, double change) const {
     const HydraulicTable& table = storing_table(node, pressure);
     const double turn = table.switch_pressure();
     if (pressure > 0 && pressure + change < 0) return 0.0;
+    if (pressure >= turn && pressure <= 0 && pressure + change > 0 && surface_node_[node] != 0)
+        return std::numeric_limits<double>::min();
     constexpr double straight = 1e-3;  // the curves are so over this share of the suction
     if (pressure >= turn && pressure + change >= turn) return pressure + change;
     if (std::abs(change) < straight * std::abs(pressure)) return pressure + change;

@@ -106,6 +106,7 @@ private:
     const Scene& scene_;
     std::vector<HydraulicTable> tables_;  // one a soil
     std::vector<char> held_node_;
+    std::vector<char> surface_node_;
     struct NodePortion {
         double volume;  // m3, of ground
         int32_t soil;

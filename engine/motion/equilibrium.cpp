@@ -1,5 +1,7 @@
 #include "motion/equilibrium.hpp"
 
+#include "motion/stability.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -52,6 +54,19 @@ EquilibriumOutcome Equilibrium::solve(const Loads& loads, double wanted, int32_t
         if (!accelerate(outcome)) creep(most_creep_steps, outcome);
     }
     finish(outcome);
+    return outcome;
+}
+
+EquilibriumOutcome Equilibrium::solve_with(Companion& companion, int32_t most_creep_steps) {
+    EquilibriumOutcome outcome;
+    reject();
+    is_at_start_ = false;
+    wanted_ = tolerance;
+    if (!follow(&companion, 0)) return outcome;
+    creep(most_creep_steps, outcome, &companion);
+    finish(outcome);
+    if (outcome.status == EquilibriumStatus::converged && !companion.agrees())
+        outcome.status = EquilibriumStatus::not_converged;
     return outcome;
 }
 
@@ -203,13 +218,9 @@ double Equilibrium::volumetric_strain(int32_t cell, std::span<const double> disp
     return displacement_gradient<Line2>(kinematics_.gradient<Line2>(cell, 0), u)(1, 1);
 }
 
-bool Equilibrium::linearise(const Loads& loads) {
-    constexpr double viscosity = 1e-6;  // keeps mechanisms that hardly resist finite
-    start(loads);
-    unbalance();
-    left_ = residual_;
-    EquilibriumOutcome unused;
-    return equations_.count() > 0 && factorise_tangent(viscosity, unused);
+bool Equilibrium::is_stable(const Loads& loads) const {
+    if (mesh_.dimension == 1 || equations_.count() == 0) return true;
+    return talus::is_stable(kinematics_, points_, loads.pore_stress, equations_.number, elastic_.matrix);
 }
 
 std::span<const double> Equilibrium::answer(const Loads& loads) {
@@ -217,9 +228,9 @@ std::span<const double> Equilibrium::answer(const Loads& loads) {
     unbalance();
     for (size_t i = 0; i < direction_.size(); ++i) direction_[i] = residual_[i] - left_[i];
     tangent_.solver->solve(tangent_.matrix, direction_);
-    std::fill(start_.begin(), start_.end(), 0.0);
-    for (size_t i = 0; i < direction_.size(); ++i) start_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
-    return start_;
+    answer_.assign(increment_.size(), 0.0);
+    for (size_t i = 0; i < direction_.size(); ++i) answer_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
+    return answer_;
 }
 
 }  // namespace talus

@@ -6,6 +6,7 @@
 #include "motion/anderson.hpp"
 #include "motion/cell_kinematics.hpp"
 #include "motion/collapse.hpp"
+#include "motion/companion.hpp"
 #include "motion/loads.hpp"
 #include "motion/skeleton.hpp"
 #include "motion/stiffness.hpp"
@@ -54,6 +55,9 @@ public:
     /// many steps of creep it is given up.
     EquilibriumOutcome solve(const Loads& loads, double wanted = tolerance, int32_t most_creep_steps = 200);
 
+    /// Creeps from the accepted state, without increment, to where the skeleton is in equilibrium with what loads it and that agrees.
+    EquilibriumOutcome solve_with(Companion& companion, int32_t most_creep_steps);
+
     /// As solve() for a skeleton that does not yield: gravity turned on elastically.
     EquilibriumOutcome solve_elastically(const Loads& loads);
 
@@ -80,12 +84,11 @@ public:
     /// The same under any displacement (nodes x dimension, m).
     [[nodiscard]] double volumetric_strain(int32_t cell, std::span<const double> displacement) const;
 
-    /// Makes the tangent at the answer of the last solve(), which these loads had. False where it is singular.
-    bool linearise(const Loads& loads);
-
-    /// After linearise(): the change of the displacement (nodes x dimension, m) under loads that hardly differ, to first order. The
-    /// trial state is that of no answer until the next solve().
+    /// Within Companion::guide(): the change of the displacement (nodes x dimension, m) under loads that hardly differ, to first order.
     std::span<const double> answer(const Loads& loads);
+
+    /// Whether the ground, without yield, comes back from a nudge: it does not where its stress outweighs its stiffness.
+    [[nodiscard]] bool is_stable(const Loads& loads) const;
 
     [[nodiscard]] double least_factor_of_safety() const { return skeleton_.least_factor_of_safety(); }
 
@@ -110,8 +113,10 @@ private:
     double relative_residual();
     void predict(double wanted, EquilibriumOutcome& outcome);
     bool accelerate(EquilibriumOutcome& outcome);
-    bool creep(int32_t most_steps, EquilibriumOutcome& outcome);
-    double follow_direction();
+    bool creep(int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion = nullptr);
+    double follow_direction(Companion* companion);
+    void guide(Companion& companion);
+    bool follow(Companion* companion, double length);
     void find_mechanism(CollapseEvidence& evidence);
     double elastic_displacement(EquilibriumOutcome& outcome);
     bool watch(CollapseWatch& watch, std::span<const double> last_direction) const;
@@ -135,9 +140,10 @@ private:
     std::vector<double> external_, internal_, start_;            // nodes x dimension
     std::vector<double> residual_, direction_, last_direction_;  // equations
     Anderson acceleration_;
-    double wanted_ = tolerance;  // relative residual that the present solve aims at
-    double left_residual_ = 0;   // that the last solve left
-    std::vector<double> left_;   // equations: unbalanced force that the last linearise() found
+    double wanted_ = tolerance;   // relative residual that the present solve aims at
+    double left_residual_ = 0;    // that the last solve left
+    std::vector<double> left_;    // equations: unbalanced force where a companion guides from
+    std::vector<double> answer_;  // nodes x dimension
     int32_t yielding_ = 0;
 };
 

@@ -92,32 +92,36 @@ bool Equilibrium::accelerate(EquilibriumOutcome& outcome) {
 /// Implicit steps of a skeleton with viscosity, viscosity * elastic stiffness * velocity: each solves
 /// (tangent + viscosity * elastic stiffness) step = unbalanced force. The viscosity falls with the unbalanced force, which ends in
 /// Newton's method where a balance exists (pseudo-transient continuation; Kelley & Keyes, SIAM J. Numer. Anal. 35, 1998), and in
-/// the steady motion of a mechanism where there is none. True: arrived.
-bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome) {
-    constexpr double first_viscosity = 0.01, largest_viscosity = 1e3;
+/// the steady motion of a mechanism where there is none. With a companion it is both that creep. True: arrived.
+bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion) {
+    const auto agrees = [companion] { return companion == nullptr || companion->agrees(); };
+    constexpr double first_viscosity = 0.01;
+    constexpr double largest_viscosity =
+        1e6;  // water that softens ground by its pressure may be 1e5 times as stiff as it
     constexpr double smallest_ratio = 0.1, steady_ratio = 0.8;
     CollapseWatch collapse(elastic_displacement(outcome));
     double viscosity = first_viscosity;
     double unbalanced = norm(residual_);
     std::fill(last_direction_.begin(), last_direction_.end(), 0.0);
     for (int32_t k = 0; k < most_steps && viscosity < largest_viscosity; ++k) {
-        if (relative_residual() <= wanted_) return true;
+        if (relative_residual() <= wanted_ && agrees()) return true;
         double length = 0;
         if (factorise_tangent(viscosity, outcome)) {
             solve_for_direction(tangent_, outcome);
             ++outcome.pseudo_steps;
-            length = follow_direction();
+            if (companion != nullptr) guide(*companion);
+            length = follow_direction(companion);
         }
         if (length == 0) {
             viscosity *= 4;
             continue;
         }
         const bool gains = norm(residual_) < unbalanced / 2;
-        if (!gains && relative_residual() <= tolerance) return true;
+        if (!gains && relative_residual() <= tolerance && agrees()) return true;
         const double ratio = std::clamp(norm(residual_) / unbalanced, smallest_ratio, 1.0);
         unbalanced = norm(residual_);
         viscosity *= length < 1 ? 2 : steady_ratio * ratio;
-        const bool is_proved = watch(collapse, last_direction_);
+        const bool is_proved = watch(collapse, last_direction_) && agrees();
         outcome.collapse = collapse.evidence();
         if (is_proved) {
             outcome.status = EquilibriumStatus::no_equilibrium;
@@ -126,29 +130,56 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome) {
         }
         last_direction_ = direction_;
     }
-    return relative_residual() <= tolerance;
+    return relative_residual() <= tolerance && agrees();
 }
 
 /// Goes along the direction, which is cut to the part gone, until the unbalanced force does hardly less work on it than at the start
 /// with the sign turned, or more: farther, the linear step would leave the path of the creeping ground. Returns the part gone; 0, and
 /// back at the start, where the direction is none that the unbalanced force drives.
-double Equilibrium::follow_direction() {
+double Equilibrium::follow_direction(Companion* companion) {
     constexpr double most_overshoot = 0.5, most_growth = 1.1;
     constexpr int32_t most_cuts = 6;
-    const double power = dot(residual_, direction_);
+    const auto work = [&] { return dot(residual_, direction_) + (companion != nullptr ? companion->power() : 0.0); };
+    const double power = work();
     if (!(power > 0)) return 0;
     start_ = increment_;
     double length = 1;
     for (int32_t k = 0;; ++k) {
         increment_ = start_;
         step_along(length);
-        unbalance();
-        const double left = dot(residual_, direction_) / power;
-        if (k == most_cuts || (left >= -most_overshoot && left <= most_growth)) break;
+        const bool follows = follow(companion, length);
+        const double left = follows ? work() / power : -1.0;  // as beyond the balance: nearer
+        if (left >= -most_overshoot && left <= most_growth) break;
+        if (k == most_cuts) {
+            if (follows) break;
+            increment_ = start_;
+            follow(companion, 0);
+            return 0;
+        }
         length *= left > 0 ? 0.5 : std::clamp(1 / (1 - left), 0.1, 0.7);
     }
     for (double& d : direction_) d *= length;
     return length;
+}
+
+/// Unbalanced forces where the companion has gone too. False where it cannot.
+bool Equilibrium::follow(Companion* companion, double length) {
+    if (companion != nullptr) {
+        const std::optional<Loads> loads = companion->follow(length);
+        if (!loads) return false;
+        start(*loads);
+    }
+    unbalance();
+    return true;
+}
+
+void Equilibrium::guide(Companion& companion) {
+    left_ = residual_;
+    std::fill(start_.begin(), start_.end(), 0.0);
+    for (size_t i = 0; i < direction_.size(); ++i) start_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
+    companion.guide(start_);
+    for (size_t i = 0; i < direction_.size(); ++i) direction_[i] = start_[static_cast<size_t>(equations_.freedom[i])];
+    residual_ = left_;
 }
 
 void Equilibrium::find_mechanism(CollapseEvidence& evidence) {

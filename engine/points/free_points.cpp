@@ -29,7 +29,7 @@ double FreePoints::least(PointField name) const {
 }
 
 size_t FreePoints::bytes_a_point() const {
-    size_t bytes = sizeof(int32_t) * ((soil.empty() ? 0 : 1) + (number.empty() ? 0 : 1));
+    size_t bytes = sizeof(int32_t) * ((soil.empty() ? 0 : 1) + (number.empty() ? 0 : 1) + (quiet.empty() ? 0 : 1));
     for (const auto& values : field) bytes += values.empty() ? 0 : sizeof(double);
     return bytes;
 }
@@ -38,6 +38,7 @@ void FreePoints::arrange(const std::vector<int32_t>& order) {
     for (auto& values : field) arrange_field(values, old_values_, order);
     arrange_field(soil, old_numbers_, order);
     arrange_field(number, old_numbers_, order);
+    arrange_field(quiet, old_numbers_, order);
 }
 
 }  // namespace talus

@@ -52,6 +52,7 @@ struct FreePoints {
     std::array<std::vector<double>, point_fields> field;
     std::vector<int32_t> soil;    ///< index into Scene::soils
     std::vector<int32_t> number;  ///< the point's own, kept when points are arranged anew
+    std::vector<int32_t> quiet;   ///< substeps for which it has been slow; empty: not counted
 
     /// So many points with the first of the fields, all zero.
     void assign(size_t points, size_t fields);

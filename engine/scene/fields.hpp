@@ -196,7 +196,10 @@ void fields(auto& visit, Is<Initial> auto& initial) {
 
 void fields(auto& visit, Is<Numerics> auto& numerics) { visit("tolerance", numerics.tolerance); }
 
-void fields(auto& visit, Is<Dynamics> auto& dynamics) { visit.positive("cellSize", dynamics.cell_size); }
+void fields(auto& visit, Is<Dynamics> auto& dynamics) {
+    visit.positive("cellSize", dynamics.cell_size);
+    visit.positive("restSpeed", dynamics.rest_speed);
+}
 
 void fields(auto& visit, Is<Schedule> auto& schedule) {
     visit("duration", schedule.duration);

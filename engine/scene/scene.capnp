@@ -517,6 +517,9 @@ struct Dynamics {
   cellSize @0 :Float64 = nan $limits(unit = "m", low = 1e-4, high = 1e3, slips = .lengthSlips);
   # Width and height of a cell. Required for a dynamic ground. Taken a little smaller where `left` and `right` are walls, so that they lie a
   # whole number of cells apart.
+  restSpeed @1 :Float64 = nan $limits(unit = "m/s", low = 1e-9, high = 10);
+  # Of dry ground: what has been slower than this for 1000 substeps, with all that lies up to 8 cells away, is held, as it lies and with its
+  # stress, until something near it moves faster; it takes next to no time. Left out: nothing is held.
 }
 
 struct Schedule {

@@ -179,7 +179,8 @@ struct Numerics {
 
 /// Of a dynamic ground.
 struct Dynamics {
-    double cell_size = 0;  ///< m
+    double cell_size = 0;   ///< m
+    double rest_speed = 0;  ///< m/s; 0: nothing is held
 };
 
 /// What a host that only follows the scene (the runner) does.

@@ -47,9 +47,15 @@ void check_moving_water(const Check& check, const Scene& scene) {
 
 /// What a dynamic ground cannot do yet.
 void check_regime(const Check& check, const Scene& scene) {
-    const Check cell_size = check.at("dynamics").at("cellSize");
-    if (scene.physics.regime == MotionRegime::quasi_static)
-        return cell_size.unused(given_positive(scene.dynamics.cell_size), "a ground whose regime is not dynamic");
+    const Check cell_size = check.at("dynamics").at("cellSize"), rest_speed = check.at("dynamics").at("restSpeed");
+    const bool rests = given_positive(scene.dynamics.rest_speed);
+    if (scene.physics.regime == MotionRegime::quasi_static) {
+        cell_size.unused(given_positive(scene.dynamics.cell_size), "a ground whose regime is not dynamic");
+        rest_speed.unused(rests, "a ground whose regime is not dynamic");
+        return;
+    }
+    rest_speed.require(!(rests && scene.physics.water),
+                       "= " + value_text(scene.dynamics.rest_speed) + " m/s: is not supported yet where the ground holds water");
     cell_size.needed(given_positive(scene.dynamics.cell_size), "a dynamic ground");
     const Check physics = check.at("physics");
     physics.at("deforming").require(scene.physics.deforming, "= false: must be true where the regime is dynamic");

@@ -3,6 +3,7 @@
 import os
 import pathlib
 
+import composition_cost
 import talus
 from machine import circumstances, text
 from page import number, table
@@ -53,7 +54,7 @@ def measure_or_say(scene):
 def run():
     scene = read_scene(SCENE)
     rows = [{"variant": name, **in_bounds(measure_or_say, change(scene))} for name, change in VARIANTS.items()]
-    return {"scene": SCENE, "hours": HOURS, "rows": rows, **circumstances()}
+    return {"scene": SCENE, "hours": HOURS, "rows": rows, "motion": composition_cost.run(), **circumstances()}
 
 
 # --- the page ---
@@ -82,4 +83,25 @@ def page(result):
         lines += table(["variant", *FIGURES], [[row["variant"], *figure_line(row, result["rows"][0])] for row in done])
     lines += [f"- {row['variant']} leaves out: {'; '.join(row['left_out'])}." for row in done]
     lines += [f"- {row['variant']} was not run to the end: {row['reason']}" for row in result["rows"] if row["reason"]]
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *motion_lines(result["motion"])]) + "\n"
+
+
+# --- ground in motion ---
+
+COMPOSITIONS = {"dry_elastic": "dry, elastic", "dry_mohr_coulomb": "dry, Mohr-Coulomb", "two_phase": "solid and water",
+                "three_phase": "solid, water and air"}
+
+
+def motion_lines(cost):
+    """Nanoseconds of a point and substep by composition, and of a dry scene beside the loop that it needs."""
+    yield "\n## In motion\n"
+    yield ("Explicit motion, 16,384 points that collapse (`tests/bench throughput`), one thread: each composition is a loop of its own. The last row is"
+           " the same dry column as a scene of the whole engine, beside the loop of dry ground alone in the same substeps.\n")
+    known = {name: cost[key] for key, name in COMPOSITIONS.items() if key in cost}
+    full = list(known)[-1]
+    lines = [[name, f"{value:.1f}", f"{value / known[full]:.2f}"] for name, value in known.items()]
+    yield from table(["composition", "ns a point and substep", f"of {full}"], lines)
+    ratio = cost["dry_scene"] / cost["dry_scene_alone"]
+    yield from table(["", "ns a point and substep", "of the loop alone"],
+                     [["loop of dry ground alone", f"{cost['dry_scene_alone']:.1f}", "1"],
+                      ["dry scene of the whole engine", f"{cost['dry_scene']:.1f}", f"{ratio:.3f}"]])

@@ -22,18 +22,23 @@ def draw_tolerances(axes, rows, cost, quantity):
                     linewidth=0.8, label=f"tolerance {tolerance:g}" + (", even cells" if even else ""))
 
 
-def draw_marks(axes, rows, baseline, cost, quantity):
+def draw_marks(axes, rows, result, cost, quantity):
     best = front(rows, quantity)
     axes.loglog([row[cost] for row in best], [quantity.of(row) for row in best], "k-", linewidth=3, alpha=0.15, label="front")
     for row in (row for row in rows if row["default"]):
         axes.plot(row[cost], quantity.of(row), "ks", markersize=10, fillstyle="none", label="the scene's setting")
+    explicit, baseline = result["explicit"], result["baseline"]
+    if explicit:
+        axes.plot([run[cost] for run in explicit], [quantity.of(run) for run in explicit], "rv-", markersize=5, linewidth=0.8,
+                  label="explicit motion")
     if baseline and not (baseline["recorded"] and cost == "wall_s"):  # the recorded wall seconds are those of a busy machine
         axes.plot(baseline[cost], quantity.of(baseline), "rx", markersize=9, markeredgewidth=2, label=baseline["name"])
 
 
 def label_ticks(axis):
-    """1, 2 and 5 of each decade: the range may be less than one."""
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    """Decades, or 1, 2 and 5 of each where there are few of them."""
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 300 * low else (1,)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 
@@ -46,7 +51,7 @@ def draw(case, result, folder):
     for quantity, line in zip(headlines, grid):
         for (cost, _), axes in zip(COSTS, line):
             draw_tolerances(axes, rows, cost, quantity)
-            draw_marks(axes, rows, result["baseline"], cost, quantity)
+            draw_marks(axes, rows, result, cost, quantity)
             axes.grid(True, alpha=0.25)
             label_ticks(axes.xaxis)
             label_ticks(axes.yaxis)

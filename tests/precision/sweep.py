@@ -6,6 +6,8 @@ import subprocess
 import sys
 
 import column
+import explicit_motion
+import numpy
 import slopes
 import talus
 from isolated import in_a_process
@@ -13,6 +15,7 @@ from rows import REFERENCES, read_scene
 from settings import set_even_growth, set_resolution, set_tolerance
 
 WALL_BOUND = 120.0  # s: a run that takes longer is stopped
+EXPLICIT_CELLS = (8, 12, 25)  # of the column by explicit motion
 LEAST_MEASURED = 1.0  # s: shorter runs are repeated until they add up to this,
 MOST_REPEATS = 5  # but no more than this, and the quickest counts
 
@@ -63,14 +66,25 @@ def measure(case, scene):
 def column_errors(case, _engine, profiles):
     """The largest over the times of the profiles."""
     errors = list(column.profile_errors(case, profiles))
-    return {name: max(error[name] for error in errors) for name in errors[0]}
+    return {name: float(max(error[name] for error in errors)) for name in errors[0]}
 
 
 def slope_errors(case, engine):
     return {"rms_pressure_Pa": slopes.field_error(case, engine), **slopes.history_errors(case, engine)}
 
 
-# --- the baseline ---
+# --- other methods ---
+
+def run_explicit(case):
+    """The column by explicit motion of material points: rows beside the sweep's, as the baseline's."""
+    for cells in EXPLICIT_CELLS if case == "column" else ():
+        profiles, clock = explicit_motion.column_run(cells)
+        heights = numpy.full(cells, 1 / cells)
+        at_times = [(numpy.array(profile["height"]), heights, numpy.array(profile["pressure"]), numpy.array(profile["saturation"]))
+                    for profile in profiles[:len(column.TIMES)]]
+        yield {"name": f"explicit motion, {1 / cells:.3g} m", "recorded": False, "nodes": cells,
+               "errors": column_errors(case, None, at_times), "wall_s": clock.wall, "cpu_s": clock.cpu}
+
 
 def run_baseline(case, folder):
     """The finite elements of reference/baseline.py, run now if possible, else as recorded; None where there are none."""

@@ -423,8 +423,7 @@ TEST_CASE("C API: from the storm through failure and motion to rest, with every 
         CHECK(event.time > before);
     }
 
-    // The step of the failure, cancelled while the ground moves, leaves no trace; in smaller pieces it comes to the same.
-    REQUIRE(talus_engine_advance_to(engine.get(), before - 600, &report) == TALUS_OK);
+    // The step of the failure, cancelled while the ground moves, leaves no trace: done again, it comes to the same.
     while (report.time < before) REQUIRE(talus_engine_step(engine.get(), 600, &report) == TALUS_OK);
     const std::vector<double> standing = read(engine, "net_stress"), pressure = read(engine, "pressure");
     impatient.calls = 0;
@@ -435,7 +434,7 @@ TEST_CASE("C API: from the storm through failure and motion to rest, with every 
     impatient.limit = -1;
     REQUIRE(talus_engine_step(engine.get(), 600, &report) == TALUS_OK);
     CHECK(report.regime == TALUS_AT_REST);
-    CHECK(report.sliding_volume == doctest::Approx(plain.sliding_volume).epsilon(0.2));
+    CHECK(report.sliding_volume == plain.sliding_volume);
 
     // What rests lies still, and rain runs off.
     const std::vector<double> place = read(twin, "point_position");

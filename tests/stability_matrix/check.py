@@ -5,6 +5,9 @@ from scenes import WATER_WEIGHT
 from strength import YieldCheck
 
 
+DRAINED = 1e-6  # below the residual saturation: so much the last substep of a point in motion that drains may take
+
+
 def peak(values):
     """How far a value inside stands above lower ones on both sides of it: 0 where the row falls, then rises."""
     if len(values) < 3:
@@ -27,16 +30,28 @@ def moved(report):
 def balances(reports):
     """The most water missed at any time, relative to the water moved until then and to the most that was stored.
 
-    The water moved counts at least a millionth of that stored: less is rounding.
+    The water moved counts at least a millionth of that stored, in motion a ten-thousandth: less is rounding, which adds up over substeps.
     """
     stored = max(reports[-1]["water_initial"], *(report["water_stored"] for report in reports))
-    shares = [missed(report) / max(moved(report), 1e-6 * stored, 1e-300) for report in reports]
+    least = (1e-4 if reports[-1]["motion_substeps"] else 1e-6) * stored
+    shares = [missed(report) / max(moved(report), least, 1e-300) for report in reports]
     return {"balance": float(numpy.max(shares)),  # NaN stays, which max() would lose
             "balance_stored": float(numpy.max([missed(report) for report in reports]) / max(stored, 1e-300))}
 
 
+def energy_gained(reports):
+    """The most that dry ground has gained in motion, of the largest kinetic and elastic energy; None where water or the hydraulic part counts."""
+    last = reports[-1]
+    if last["regime"] not in ("dynamic", "at_rest") or last["water_stored"] > 0:
+        return None
+    largest = max(report["kinetic_energy"] + report["elastic_energy"] for report in reports)
+    return float(numpy.max([-report["dissipated_energy"] for report in reports]) / max(largest, 1e-300))
+
+
 def soil_of_points(engine):
-    """Number of the soil of each material point: a cell has as many points as nodes."""
+    """Number of the soil of each material point: a cell of a mesh has as many points as nodes."""
+    if "point_soil" in engine.fields:
+        return engine.read("point_soil").astype(int)
     return numpy.repeat(engine.read("cell_soil").astype(int), numpy.diff(engine.read("cell_start").astype(int)))
 
 
@@ -51,6 +66,7 @@ class Watch:
         self.engine, self.fields = engine, engine.fields
         self.is_wet = "saturation" in self.fields
         self.is_column = engine.describe()["dimension"] == 1
+        self.is_dynamic = "point_soil" in self.fields
         self.seen = {"not_finite": [], "out_of_range": 0.0, "overshoot_saturation": 0.0, "overshoot_pressure": 0.0,
                      "yield_exceeded": 0.0}
         self.yield_check = YieldCheck(engine, scene, soil_of_points(engine)) if "net_stress" in self.fields else None
@@ -60,7 +76,12 @@ class Watch:
         soils = soil_of_points(engine)
         self.least = numpy.array([curve.get("residualSaturation", 0.0) for curve in retention])[soils]
         self.most = numpy.array([curve.get("maximumSaturation", 1.0) for curve in retention])[soils]
-        self.weight = WATER_WEIGHT * (engine.read("node_position").max() - engine.read("node_position").min())
+        if self.is_column:
+            self.weight = WATER_WEIGHT * numpy.ptp(engine.read("node_position"))
+        self.start_pores = self.pores() if self.is_dynamic else None  # where they widen, water that does not move fills less of them
+
+    def pores(self):
+        return self.engine.read("porosity") * self.engine.read("point_volume")
 
     def _raise(self, name, value):
         self.seen[name] = float(numpy.maximum(self.seen[name], value))  # NaN stays
@@ -71,14 +92,21 @@ class Watch:
                 self.seen["not_finite"].append(name)
         if self.is_wet:
             self.look_at_water()
-        if self.yield_check and not has_lost_equilibrium(self.engine):  # beyond it the stress stands and the suction goes on
+        if self.yield_check and self.strength_holds():
             self._raise("yield_exceeded", self.yield_check())
 
+    def strength_holds(self):
+        """Not beyond a loss of equilibrium, where the stress stands and the suction goes on; nor before ground that need not stand moves."""
+        return not has_lost_equilibrium(self.engine) and not (self.is_dynamic and self.engine.time == 0)
+
     def look_at_water(self):
-        pressure, saturation = self.engine.read("pressure"), self.engine.read("saturation")
-        self._raise("out_of_range", numpy.maximum(self.least - saturation, saturation - self.most).max())
+        saturation = self.engine.read("saturation")
+        least = self.least if self.start_pores is None else self.least * numpy.minimum(self.start_pores / self.pores(), 1)
+        beyond = numpy.maximum(least - saturation, saturation - self.most).max()
+        self._raise("out_of_range", beyond - DRAINED if self.is_dynamic else beyond)
         if self.is_column:
             self._raise("overshoot_saturation", peak(saturation) / (self.most - self.least).max())
+            pressure = self.engine.read("pressure")
             self._raise("overshoot_pressure", peak(pressure) / max(numpy.ptp(pressure), self.weight))
 
     def effective_saturation(self):

@@ -10,6 +10,7 @@ MONOTONE = 1e-6
 RANGE = 1e-12  # of saturation: rounding
 GROWTH = 1.0  # of an increment from step to step
 YIELD = 1e-6  # of the strength
+ENERGY = 0.05  # of the largest kinetic and elastic energy: explicit waves in a few cells swing by as much
 
 
 def kind(text):
@@ -38,6 +39,10 @@ def of_values(row):
         yield f"saturation out of its range by {row['out_of_range']:.2g}"
     if not row["yield_exceeded"] <= YIELD:
         yield f"yield exceeded by {row['yield_exceeded']:.2g} of the strength"
+
+
+    if not (row["energy_gained"] or 0.0) <= ENERGY:
+        yield f"energy gained, {row['energy_gained']:.2g} of the kinetic and elastic"
 
 
 def of_the_case(case, row):

@@ -83,7 +83,7 @@ def coupled_cases():
     scene = few_cells(sand, 1, {"flow": "hydrostatic", "waterTable": 0, "stress": "k0", "k0": 0.4}, surface=rain_zone(1e-6))
     yield Case("found/91_reduced", scene, [["step", 1, 5]])
     for number in (31, 77, 83, 89, 91, 107, 146, 191, 187, 203, 254, 257, 272, 287, 371, 382, 403, 440, 467, 673, 754, 773,
-                   787, 865, 914, 980):
+                   779, 787, 865, 914, 980, 1022, 1028, 1191, 1574, 1966, 2218, 2645, 3302, 3922, 3926, 14286, 17563):
         yield replace(random_case(number), name=f"found/{number}")
 
 

@@ -1,4 +1,5 @@
-"""The random search: all ranges at once. The number of a scene is its seed, and its rest by three says which kind it is."""
+"""The random search: all ranges at once. The number of a scene is its seed, and its rest by three says which kind it is; scenes in motion
+have numbers of their own."""
 
 import math
 import random
@@ -134,6 +135,83 @@ def small_section(seed):
     level = {"time": [0, draw.log_uniform(1, 1e6)], "value": [0.0, draw.uniform(-1, 1) * height]}
     watered.update(draw.choice(({}, {"flow": "hydrostatic", "flowValue": level})))
     return deforming(draw, ground, soils, boundaries, low), random_steps(draw, most_times=2)
+
+
+# --- ground in motion ---
+
+TOO_SOFT = "too soft for what it bears"
+SUBSTEPS = (10, 3000)  # about
+
+
+def random_walls(draw, is_wet):
+    """Of the base, the left and the right; the ground may leave a side without one."""
+    rubs = () if is_wet else ("friction",)
+    for side, motions in (("base", ("fixed", "roller")), ("left", ("roller", None)), ("right", ("roller", None))):
+        motion = draw.choice((*motions, *rubs))
+        if motion:
+            yield {"name": side, "side": side, "motion": motion,
+                   **({"frictionAngle": draw.uniform(1, 45)} if motion == "friction" else {})}
+
+
+def moving_soil(draw, name, height, is_wet):
+    soil = {**random_soil(draw, name), "dryDensity": draw.log_uniform(800, 2800),
+            "solid": {"youngModulus": max(2e4, draw.log_uniform(30, 1e6) * WEIGHT * height),
+                      "poissonRatio": float(f"{0.5 - draw.log_uniform(1e-3, 0.5):.4f}")}}
+    if not is_wet:
+        del soil["hydraulics"]
+    if draw.whole(0, 4) == 0:
+        soil["solid"]["model"] = "elastic"
+        return soil
+    cohesion, friction = draw.choice((0, draw.log_uniform(50, 1e5))), draw.uniform(1, 60)
+    wet = ({"model": "vanapalli"}, {"model": "fredlund", "suctionFrictionAngle": draw.uniform(1, 40)}) if is_wet else ()
+    soil["solid"].update(strength={"cohesion": cohesion, "frictionAngle": friction, **draw.choice(({"model": "constant"}, *wet))},
+                         dilationAngle=draw.choice((0, draw.uniform(0, friction))))
+    if draw.choice((True, False)):
+        soil["solid"]["softening"] = {"residualCohesion": draw.choice((0, cohesion)), "slip": draw.log_uniform(1e-4, 1),
+                                      "residualFrictionAngle": draw.uniform(1, friction)}
+    return soil
+
+
+def crossing_time(soils, water, cell_size):
+    """In which about the fastest wave crosses a cell, s."""
+    squares = [soil["solid"]["youngModulus"] / (0.5 - soil["solid"]["poissonRatio"]) / soil["dryDensity"] + water / 1000 / soil["porosity"]
+               for soil in soils]
+    return cell_size / math.sqrt(max(squares))
+
+
+def moving_section(seed):
+    """A face on two layers that need not stand, dry or wet."""
+    draw = Draw(seed)
+    width, steepness = draw.log_uniform(0.5, 500), draw.log_uniform(0.05, 3)
+    low, fall = draw.log_uniform(0.1, 0.6) * width, steepness * width / 3
+    height, is_wet = low + fall, draw.choice((True, False))
+    soils = [moving_soil(draw, name, height, is_wet) for name in ("upper", "lower")]
+    cell_size = float(f"{height / draw.whole(3, 15):.4g}")
+    ground = section([[0.0, height], [width / 3, height], [2 * width / 3, low], [width, low]], [[0.0, 0.0], [width, 0.0]],
+                     width / draw.whole(4, 8), height / draw.whole(5, 10), height / draw.whole(2, 4),
+                     [{"soil": "upper"}, {"soil": "lower", "top": [[0.0, low / 2], [width, low / 2]]}])
+    walls = list(random_walls(draw, is_wet))
+    is_held = any(wall["side"] == "base" for wall in walls) and any(wall["motion"] != "roller" or wall["side"] != "base" for wall in walls)
+    scene = {"name": "stability", "soils": soils, "ground": ground, "boundaries": walls,
+             "physics": {"regime": "dynamic", "water": is_wet}, "dynamics": {"cellSize": cell_size},
+             "initial": {"stress": draw.choice(("elastic", "zero")) if is_held else "zero"}}
+    water = 0.0
+    if is_wet:
+        water = draw.log_uniform(1e5, 2e9)
+        scene["physics"]["stress"] = draw.choice(("net", "bishop"))
+        scene["water"] = {"bulkModulus": water}
+        scene["surface"] = rain_zone(draw.log_uniform(0.1, 1000) * MM_PER_HOUR)
+        scene["initial"].update(draw.choice(({"flow": "suction", "suction": draw.choice((0.0, draw.log_uniform(1, 1e6)))},
+                                             {"flow": "hydrostatic", "waterTable": draw.uniform(-1, 1) * height})))
+    elif draw.choice((True, False)):
+        scene["dynamics"]["restSpeed"] = draw.log_uniform(1e-6, 1)
+    duration = draw.log_uniform(*SUBSTEPS) * crossing_time(soils, water, cell_size)
+    return scene, [["step", float(f"{duration * draw.uniform(0.01, 0.5):.4g}"), 1] for _ in range(draw.whole(1, 5))]
+
+
+def moving_case(number):
+    scene, steps = moving_section(number)
+    return Case(f"random/moving_{number}", scene, steps, may_be_refused=TOO_SOFT)
 
 
 KINDS = (rigid_column, coupled_column, small_section)

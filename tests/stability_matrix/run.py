@@ -4,7 +4,7 @@ import time
 
 import numpy
 import talus
-from check import Watch, balances, has_lost_equilibrium
+from check import Watch, balances, energy_gained, has_lost_equilibrium
 from claims import tested
 from faults import faults
 from isolated import in_a_process
@@ -48,9 +48,9 @@ def march(case, engine, watch):
         watch.look()
         if settling:
             settling.look()
-    return {"substeps": sum(report["flow_substeps"] for report in reports),
+    return {"substeps": sum(report["flow_substeps"] + report["motion_substeps"] for report in reports),
             "failures": sum(report["flow_failures"] for report in reports),
-            **balances(reports or [engine.report()]), "wall_s": wall,
+            **balances(reports or [engine.report()]), "energy_gained": energy_gained(reports or [engine.report()]), "wall_s": wall,
             "equilibrium_lost": has_lost_equilibrium(engine), "growth": settling and settling.growth()}
 
 

@@ -3,21 +3,28 @@
 from concurrent.futures import ProcessPoolExecutor
 
 import run
-from random_cases import random_case
+from random_cases import moving_case, random_case
 from settings import DEFAULT_TOLERANCE
 
 MOVED_SHARE = 0.99  # that a tenth of the tolerance may move by no more than the tolerance
 REFUSED_SHARE = 0.01
 
 
-def run_number(number):
-    return run.run(random_case(number))
+MOVING = 5  # of so many scenes one moves by its momentum
 
 
-def rows(numbers, jobs):
-    """One after the other in the numbers' order, some at once: no price is taken of them."""
+def case_of(index):
+    return moving_case(index // MOVING) if index % MOVING == MOVING - 1 else random_case(index - index // MOVING)
+
+
+def run_index(index):
+    return run.run(case_of(index))
+
+
+def rows(count, jobs):
+    """One after the other, some at once: no price is taken of them."""
     with ProcessPoolExecutor(jobs) as pool:
-        yield from pool.map(run_number, numbers)
+        yield from pool.map(run_index, range(count))
 
 
 def shares(found):

@@ -4,6 +4,8 @@ import numpy
 
 ATMOSPHERE = 101325.0  # Pa
 LARGEST_FRICTION = 60.0  # degrees, of the exponential model
+STATES = 1001  # of a soil that softens
+LEAST = 1e-3  # Pa: rounding of stiff ground that bears nothing
 FLOOR = 1e-3  # of the ground's greatest strength: what a point's excess is at least compared with
 
 GAUSS = 1 / numpy.sqrt(3)
@@ -27,7 +29,8 @@ def strength_of(entries, suction, saturation):
     cohesion, friction = entries["cohesion"] + 0 * suction, entries["frictionAngle"] + 0 * suction
     model = entries.get("model", "vanapalli")
     if model == "vanapalli":
-        cohesion = cohesion + suction * saturation * numpy.tan(numpy.radians(friction))
+        gain = entries.get("suctionGainAngle", entries["frictionAngle"])  # slip does not soften it
+        cohesion = cohesion + suction * saturation * numpy.tan(numpy.radians(gain))
     elif model == "fredlund":
         cohesion = cohesion + suction * numpy.tan(numpy.radians(entries["suctionFrictionAngle"]))
     elif model == "exponential":
@@ -53,8 +56,20 @@ def excess(stress, cohesion, friction, tensile):
 
 def relative_excess(beyond, scale):
     """The largest over the ground, 0 where none is beyond."""
-    floor = FLOOR * scale.max()
-    return float(numpy.max(numpy.maximum(beyond, 0) / numpy.maximum(scale, max(floor, 1e-300))))
+    floor = max(FLOOR * scale.max(), LEAST)
+    return float(numpy.max(numpy.maximum(beyond, 0) / numpy.maximum(scale, floor)))
+
+
+def softened(solid):
+    """Entries of the strength from that without slip to the residual one: a point may be in any state between them."""
+    rest = solid.get("softening")
+    if not rest:
+        return [solid["strength"]]
+    first = solid["strength"]
+    sines = [numpy.sin(numpy.radians(angle)) for angle in (first["frictionAngle"], rest["residualFrictionAngle"])]
+    return [{**first, "suctionGainAngle": first["frictionAngle"], "cohesion": (1 - lost) * first["cohesion"] + lost * rest["residualCohesion"],
+             "frictionAngle": float(numpy.degrees(numpy.arcsin((1 - lost) * sines[0] + lost * sines[1])))}
+            for lost in numpy.linspace(0, 1, STATES)]
 
 
 class YieldCheck:
@@ -77,11 +92,10 @@ class YieldCheck:
         soil = self.scene["soils"][number]
         suction, saturation = numpy.zeros(at.sum()), numpy.ones(at.sum())
         if self.is_wet:
-            retention = soil["hydraulics"]["retention"]
-            least, most = retention.get("residualSaturation", 0.0), retention.get("maximumSaturation", 1.0)
-            suction, saturation = self.engine.read("suction")[at], (self.engine.read("saturation")[at] - least) / (most - least)
-        cohesion, friction = strength_of(soil["solid"]["strength"], suction, saturation)
-        return excess(stress[at], cohesion, friction, soil["solid"].get("tensileStrength", numpy.inf))
+            suction, saturation = self.engine.read("suction")[at], self._effective(self.engine.read("saturation"), self.soils)[at]
+        states = [excess(stress[at], *strength_of(entries, suction, saturation), soil["solid"].get("tensileStrength", numpy.inf))
+                  for entries in softened(soil["solid"])]
+        return numpy.min([beyond for beyond, _ in states], axis=0), states[0][1]
 
     def _skeleton_stress(self):
         """Net stress, or Bishop's, whose pore pressure the engine takes from the cells' nodes."""
@@ -92,6 +106,9 @@ class YieldCheck:
         return stress
 
     def _pore_stress(self):
+        if "point_pressure" in self.engine.fields:  # ground in motion has no cells, and its points hold water, not pressure
+            pressure, saturation = self.engine.read("point_pressure"), self.engine.read("saturation")
+            return pressure * numpy.where(pressure < 0, self._effective(saturation, self.soils), 1)
         starts, nodes = (self.engine.read(name).astype(int) for name in ("cell_start", "cell_nodes"))
         pressure, soils = self.engine.read("pressure"), self.engine.read("cell_soil").astype(int)
         parts = []
@@ -100,3 +117,9 @@ class YieldCheck:
             weighted = at * numpy.where(at < 0, effective_saturation(self.scene["soils"][number], numpy.maximum(-at, 0)), 1)
             parts.append(SHARES[last - first] @ weighted)
         return numpy.concatenate(parts)
+
+    def _effective(self, saturation, soils):
+        retention = [soil["hydraulics"]["retention"] for soil in self.scene["soils"]]
+        least = numpy.array([curve.get("residualSaturation", 0.0) for curve in retention])[soils]
+        most = numpy.array([curve.get("maximumSaturation", 1.0) for curve in retention])[soils]
+        return numpy.clip((saturation - least) / (most - least), 0, 1)

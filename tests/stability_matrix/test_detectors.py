@@ -8,7 +8,8 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "bindings" / "python")]
 
-import numpy  # noqa: E402  (these need the paths above)
+import dynamic_cases  # noqa: E402  (these need the paths above)
+import numpy  # noqa: E402
 import scenes  # noqa: E402
 import settling  # noqa: E402
 import shrink  # noqa: E402
@@ -21,7 +22,7 @@ from settings import DEFAULT_TOLERANCE  # noqa: E402
 from strength import excess, relative_excess  # noqa: E402
 
 SOUND = {"outcome": "finished", "reason": None, "balance": 0.0, "balance_stored": 0.0, "not_finite": [], "out_of_range": 0.0,
-         "overshoot_saturation": 0.0, "overshoot_pressure": 0.0, "yield_exceeded": 0.0, "equilibrium_lost": False, "growth": 0.9}
+         "overshoot_saturation": 0.0, "overshoot_pressure": 0.0, "yield_exceeded": 0.0, "energy_gained": None, "equilibrium_lost": False, "growth": 0.9}
 
 
 class Doctored:
@@ -47,11 +48,16 @@ def changed_at(index, value):
     return change
 
 
-def watched(scene, name=None, change=None, steps=1):
+def raised(stress):
+    stress[5] += [0, 0, 0, 1e6]
+    return stress
+
+
+def watched(scene, name=None, change=None, steps=1, seconds=3600):
     """What is seen of a run in which a field is doctored."""
     engine = Doctored(talus.Engine(talus.Scene.from_json(scene)))
     for _ in range(steps):
-        engine.step(3600)
+        engine.step(seconds)
     if name:
         engine.replace(name, change)
     watch = Watch(engine, scene)
@@ -86,7 +92,8 @@ class Values(unittest.TestCase):
 
     def test_water_balance(self):
         report = {f"water_{name}": 0.0 for name in ("run_off", "seepage", "inflow", "drained", "residual")}
-        report |= {"water_rain": 1.0, "water_infiltrated": 1.0, "water_initial": 2.0, "water_stored": 3.0}
+        report |= {"water_rain": 1.0, "water_infiltrated": 1.0, "water_initial": 2.0, "water_stored": 3.0,
+                   "motion_substeps": 0}
         self.assertEqual(self.found(**balances([report])), [])
         for name in ("rain", "stored", "residual", "drained"):
             wrong = {**report, f"water_{name}": report[f"water_{name}"] + 2e-8}
@@ -96,7 +103,7 @@ class Values(unittest.TestCase):
 
     def test_bounds(self):
         for case, bound, name, text in ((None, 1e-6, "yield_exceeded", "yield exceeded"),
-                                        (None, DEFAULT_TOLERANCE, "moved", "moves by"),
+                                        (None, DEFAULT_TOLERANCE, "moved", "moves by"), (None, 0.05, "energy_gained", "energy gained"),
                                         (Case("test/1", {}, [], settles=True), 1.0, "growth", "increments grow")):
             self.assertEqual(self.found(case, **{name: 0.99 * bound}), [])
             self.assertRegex(self.found(case, **{name: 1.01 * bound})[0], text)
@@ -138,10 +145,14 @@ class Yield(unittest.TestCase):
         self.assertEqual(self.beyond(1e3, 0, 0, 0, tensile=1e3), 0)
         self.assertGreater(self.beyond(1.001e3, 0, 0, 0, tensile=1e3), 1e-6)
 
+    def test_in_motion(self):
+        bishop = dynamic_cases.wet_bank()
+        bishop["physics"]["stress"] = "bishop"
+        for scene, field in ((dynamic_cases.dry_bank(), "net_stress"), (dynamic_cases.wet_bank(), "net_stress"), (bishop, "total_stress")):
+            self.assertLess(watched(scene, seconds=0.1)["yield_exceeded"], 1e-9)
+            self.assertGreater(watched(scene, field, raised, seconds=0.1)["yield_exceeded"], 1e-3)
+
     def test_of_a_run(self):
-        def raised(stress):
-            stress[5] += [0, 0, 0, 1e6]
-            return stress
         for measure, field in (("net", "net_stress"), ("bishop", "total_stress")):
             scene = scenes.small_slope(stress=measure, cohesion=2500, friction=24)
             self.assertLess(watched(scene)["yield_exceeded"], 1e-9)

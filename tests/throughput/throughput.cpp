@@ -13,7 +13,8 @@ using namespace talus;
 namespace {
 
 constexpr double density = 1800, porosity = 0.4, grain_density = density / (1 - porosity), step = 1e-4;
-constexpr double filled = 0.8;  // of the pores, where gas moves
+constexpr double filled = 0.8;        // of the pores, where gas moves
+constexpr double scene_step = 0.018;  // s, in cells of a metre: a little less than the engine allows itself
 constexpr int64_t steps = 300;
 const Elasticity elastic = elasticity(1e6, 0.3);
 const Walls box{{WallKind::roller, 0, 0}, {WallKind::roller, 4, 0}, {WallKind::fixed, 0, 0}};
@@ -70,6 +71,15 @@ void run(int32_t cells, int32_t threads, bool last) {
          [&] { return ExplicitMotion(size, box, 9.81, {soft}, column(cells, dry_fields), threads); });
     time("dry_mohr_coulomb", cells, threads, false,
          [&] { return ExplicitMotion(size, box, 9.81, {yielding}, column(cells, dry_fields), threads); });
+    // As the scene of tests/precision/composition_cost.py.
+    const ExplicitSoil sand{elastic, true, mohr_coulomb({50, 30}, 0, 1e300)};
+    time(
+        "dry_scene_alone", cells, threads, false,
+        [&] {
+            return ExplicitMotion(size, {{WallKind::roller, 0, 0}, {}, {WallKind::fixed, 0, 0}}, 9.81, {sand},
+                                  column(cells, dry_fields), threads);
+        },
+        scene_step / cells);
     // Water as soft as the step of the dry column bears; the work is the same.
     time("two_phase", cells, threads, false, [&] {
         return ExplicitMixture<Filling::saturated>(size, box, 9.81, {yielding}, {{grain_density, 1e-8, 0, false}}, {},
@@ -79,9 +89,9 @@ void run(int32_t cells, int32_t threads, bool last) {
     time(
         "three_phase", cells, threads, last,
         [&] {
-            return ExplicitMixture<Filling::three_phase>(
-                size, box, 9.81, {yielding}, {{grain_density, 1e-8, 0, false, 1e-6}}, {SaturationTable(loam())},
-                {1000, 1e6}, column(cells, point_fields), threads);
+            return ExplicitMixture<Filling::three_phase>(size, box, 9.81, {yielding},
+                                                         {{grain_density, 1e-8, 0, false, 1e-6}}, {{loam(), 1e6}},
+                                                         {1000, 1e6}, column(cells, point_fields), threads);
         },
         step / 10);
 }

@@ -64,7 +64,7 @@ TEST_CASE("the saturation table is the inverse of the hydraulic table") {
     soil.retention.residual_saturation = 0.1;
     soil.retention.maximum_saturation = 0.97;
     const HydraulicTable curves(soil);
-    const SaturationTable inverse(soil);
+    const SaturationTable inverse(soil, 2e9);
     for (const double pressure : {-1.0, -9.0, -11.0, -300.0, -2e4, -1e5, -1e7}) {
         const HydraulicState state = curves.at(pressure);
         const SaturationTable::State found = inverse.at(state.saturation);
@@ -75,12 +75,67 @@ TEST_CASE("the saturation table is the inverse of the hydraulic table") {
     CHECK(inverse.at(0.05).pressure < -1e8);
 }
 
+TEST_CASE("where a soil would hold its water more stiffly than water is, the saturation table is as soft as water") {
+    const auto soil = [](double alpha, double n) {
+        Hydraulics hydraulics = loam();
+        hydraulics.retention.alpha = alpha;
+        hydraulics.retention.n = n;
+        return hydraulics;
+    };
+    for (const double bulk_modulus : {1e7, 2e9}) {
+        for (const SaturationTable& table :
+             {SaturationTable(soil(1e-6, 6), bulk_modulus), SaturationTable(soil(1e-6, 12), bulk_modulus)}) {
+            for (const double saturation : {0.999, 0.99999, 1 - 1e-9}) {
+                CHECK(table.stiffness(saturation) <= bulk_modulus);
+                const double step = 1e-3 * (1 - saturation);
+                const double slope = (table.at(saturation).pressure - table.at(saturation - step).pressure) / step;
+                CHECK(table.stiffness(saturation) == doctest::Approx(slope).epsilon(1e-2));
+            }
+        }
+    }
+    CHECK(SaturationTable(soil(1e-7, 1.03), 1e6).stiffness(0.9999) > 1e8);  // where none of the curve is as soft
+}
+
+TEST_CASE("a soil that does not yield bears what its weak neighbour does not") {
+    FreePoints points = block_of_points(0.1, 0, 0, 4, 4);
+    points.soil.assign(points.count, 0);
+    for (size_t p = 0; p < points.count; ++p) {
+        points.soil[p] = points[position_x][p] > 0.2 ? 1 : 0;
+        points[stress_xy][p] = 1000;
+    }
+    const Elasticity elastic = elasticity(1e7, 0.3);
+    ExplicitMotion block(0.1, {}, 0, {{elastic}, {elastic, true, mohr_coulomb({100, 30}, 0, 1e300)}}, std::move(points),
+                         1);
+    block.step(1e-9, true);
+    for (size_t p = 0; p < block.points().count; ++p) {
+        const double stress = block.points()[stress_xy][p];
+        if (block.points().soil[p] == 0) CHECK(stress == doctest::Approx(1000).epsilon(1e-6));
+        if (block.points().soil[p] == 1) CHECK(stress < 100);
+    }
+}
+
+TEST_CASE("wet ground that falls apart loses no water") {
+    constexpr double cell_size = 0.1;
+    FreePoints points = block_of_points(cell_size, 1, 0, 5, 10, point_fields);
+    for (size_t p = 0; p < points.count; ++p) points[water_mass][p] = 1000 * porosity * 0.9 * points[point_volume][p];
+    ExplicitMixture<Filling::unsaturated> column(cell_size, {{}, {}, {WallKind::fixed, 0, 0}}, gravity,
+                                                 {{elasticity(1e6, 0.3), true, mohr_coulomb({1, 10}, 0, 1e300)}},
+                                                 {{grain_density, 1e-2 / (1000 * gravity)}}, {{loam(), 1e6}},
+                                                 {1000, 1e6}, std::move(points), 1);
+    column.set_rain([](double) { return 1e-4; });
+    const double before = water_of(column.points());
+    for (int i = 1; i <= 3000; ++i) REQUIRE(column.step(column.critical_step(), i % 100 == 0));
+    const double gained = column.rained() - column.run_off() - column.seepage();
+    CHECK(water_of(column.points()) == doctest::Approx(before + gained).epsilon(1e-12));
+    CHECK(column.rained() > 0);
+}
+
 TEST_CASE("rain on an unsaturated column enters it, and no water is lost") {
     constexpr double cell_size = 0.05;
     const Hydraulics soil = loam();
     ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e7, 0.3)}},
-                                                 {{grain_density, 1e-4 / (1000 * gravity)}}, {SaturationTable(soil)},
-                                                 {1000, 1e6}, wet_column(cell_size, 20, 0.85), 1);
+                                                 {{grain_density, 1e-4 / (1000 * gravity)}}, {{soil, 1e6}}, {1000, 1e6},
+                                                 wet_column(cell_size, 20, 0.85), 1);
     column.set_rain([](double) { return 1e-4; });
     const double before = water_of(column.points()), dt = column.critical_step();
     const auto steps = static_cast<int64_t>(std::ceil(2 / dt));
@@ -100,7 +155,7 @@ TEST_CASE("a full column sheds the rain that it cannot hold, and its water stays
     for (size_t p = 0; p < points.count; ++p)
         points[water_mass][p] *= 1 + 1000 * gravity * (1 - points[position_y][p]) / bulk_modulus;
     ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e9, 0.3)}},
-                                                 {{grain_density, 1e-4 / (1000 * gravity)}}, {SaturationTable(loam())},
+                                                 {{grain_density, 1e-4 / (1000 * gravity)}}, {{loam(), bulk_modulus}},
                                                  {1000, bulk_modulus}, std::move(points), 1);
     column.set_rain([](double) { return 1e-4; });
     const double before = water_of(column.points()), dt = column.critical_step();
@@ -116,7 +171,7 @@ TEST_CASE("a full column sheds the rain that it cannot hold, and its water stays
 }
 
 TEST_CASE("water and gas share pores at any masses") {
-    const SaturationTable table(loam());
+    const SaturationTable table(loam(), 2e9);
     const PoreFluids fluids{2e9, 101325};
     const auto at = [&](double wet) {
         const double effective = table.effective(wet);
@@ -198,7 +253,7 @@ TEST_CASE("water at rest under gravity stays at rest") {
 TEST_CASE("gas at rest stays at rest in ground that it and its water do not leave") {
     constexpr double cell_size = 0.05;
     const Hydraulics soil = loam();
-    const SaturationTable table(soil);
+    const SaturationTable table(soil, 2e9);
     // Suction and gas of a column in which neither fluid flows, the gas's pressure that of the atmosphere at the top.
     FreePoints points = wet_column(cell_size, 20, 1, point_fields);
     const double specific = air.atmosphere / air.density;
@@ -260,9 +315,8 @@ TEST_CASE(
         const double water = water_of(points), gas = air_of(points);
         const ExplicitSoil soil{elasticity(1e6, 0.3), true, mohr_coulomb({100, 30}, 0, 1e300)};
         const Walls walls{{}, {WallKind::roller, 3, 0}, {WallKind::fixed, 0, 0}, {}};
-        ExplicitMixture<Filling::three_phase> block(cell_size, walls, gravity, {soil}, {moist},
-                                                    {SaturationTable(loam())}, {1000, 1e6}, std::move(points), threads,
-                                                    air);
+        ExplicitMixture<Filling::three_phase> block(cell_size, walls, gravity, {soil}, {moist}, {{loam(), 1e6}},
+                                                    {1000, 1e6}, std::move(points), threads, air);
         for (int i = 1; i <= 2000; ++i) CHECK(block.step(block.critical_step(), i == 2000));
         CHECK(water_of(block.points()) + block.seepage() == doctest::Approx(water).epsilon(1e-12));
         CHECK(air_of(block.points()) + block.gas_escaped() == doctest::Approx(gas).epsilon(1e-12));

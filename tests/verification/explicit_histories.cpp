@@ -161,7 +161,7 @@ ExplicitMixture<Filling::three_phase> column_with_gas(const Ground& ground, size
             gravity,
             {{ground.elastic}},
             {{ground.grain_density, ground.mobility, 0, false, gas_mobility}},
-            {SaturationTable(soil)},
+            {{soil, ground.bulk_modulus}},
             {water_density, ground.bulk_modulus},
             std::move(points),
             1,
@@ -250,7 +250,7 @@ void column_explicit(size_t cells) {
         points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
     }
     auto column = column_of<Filling::unsaturated>(ground, cells, gravity, std::move(points),
-                                                  {SaturationTable(van_genuchten(4e-5, 1.2))});
+                                                  {{van_genuchten(4e-5, 1.2), ground.bulk_modulus}});
     column.set_rain([](double) { return 1e-4; });
     std::puts("[");
     double now = 0, initial = 0;

@@ -118,13 +118,17 @@ def diffusion_rows():
             pressure = exact.pressure(height, k) if exact else gas.linear(soil, 1.0, step, height, times[k])
             yield row("gas_diffusion", f"step of {step:g} Pa, pressure at {times[k]:g} s", "max",
                       abs(profile["pressure"] - pressure).max() / step, 0.01, "1", source, clock)
+def column_run(cells):
+    """Profiles of the paper's column by the explicit method, at its five times, and the clock."""
+    with Clock() as clock:
+        profiles = histories("column_explicit", cells)
+    return profiles, clock
 
 
 def column_rows():
     """The paper's column by the explicit method: within the paper's distance between two methods."""
     reference = read_csv("column.csv")
-    with Clock() as clock:
-        profiles = histories("column_explicit", 25)
+    profiles, clock = column_run(25)
     for profile in profiles:
         at = reference["time_s"] == int(profile["time"])  # the last of them, of the column just filled, is at 600.5 s
         height = numpy.array(profile["height"])

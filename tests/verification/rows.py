@@ -3,6 +3,7 @@
 import csv
 import json
 import pathlib
+import resource
 import time
 
 import numpy
@@ -13,16 +14,22 @@ SCENES = ROOT / "samples" / "scenes"
 REFERENCES = ROOT / "tests" / "verification" / "reference"
 
 
+def cpu_seconds():
+    """Of this process and of those that it waited for."""
+    waited_for = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + waited_for.ru_utime + waited_for.ru_stime
+
+
 class Clock:
     """Wall and CPU seconds of the block it is used in."""
 
     def __enter__(self):
-        self._start = time.perf_counter(), time.process_time()
+        self._start = time.perf_counter(), cpu_seconds()
         return self
 
     def __exit__(self, *exception):
         self.wall = time.perf_counter() - self._start[0]
-        self.cpu = time.process_time() - self._start[1]
+        self.cpu = cpu_seconds() - self._start[1]
 
 
 def read_csv(name):

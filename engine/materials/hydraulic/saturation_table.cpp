@@ -2,8 +2,12 @@
 
 #include "materials/hydraulic/curves.hpp"
 
+#include <limits>
+
 namespace talus {
 namespace {
+
+constexpr double largest_chord = 1e9;  // Pa, of suction
 
 /// Monotone slopes of the rows' values, per row.
 std::vector<double> row_slopes(const std::vector<double>& value) {
@@ -16,15 +20,28 @@ std::vector<double> row_slopes(const std::vector<double>& value) {
     return slope;
 }
 
+/// The suction to which the chord of the curve from saturation on is no stiffer than the bulk modulus; where none is, that of the softest chord.
+double soft_suction(const HydraulicTable& curves, double maximum, double bulk_modulus) {
+    constexpr double growth = 1.1;
+    double softest = curves.chord(), least = std::numeric_limits<double>::infinity();
+    for (double suction = curves.chord(); suction < largest_chord; suction *= growth) {
+        const double stiffness = suction / (1 - curves.at(-suction).saturation / maximum);
+        if (stiffness <= bulk_modulus) return suction;
+        if (stiffness < least) softest = suction;
+        least = std::min(least, stiffness);
+    }
+    return softest;
+}
+
 }  // namespace
 
-SaturationTable::SaturationTable(const Hydraulics& hydraulics)
+SaturationTable::SaturationTable(const Hydraulics& hydraulics, double bulk_modulus)
     : residual_(hydraulics.retention.residual_saturation),
       maximum_(hydraulics.retention.maximum_saturation),
       rows_(saturation_rows::count),
       mixed_rows_(saturation_rows::count) {
     const HydraulicTable curves(hydraulics);
-    chord_pressure_ = -curves.chord();
+    chord_pressure_ = -soft_suction(curves, maximum_, bulk_modulus);
     const HydraulicState end = curves.at(chord_pressure_);
     chord_permeability_ = end.permeability;
     chord_effective_ = effective(end.saturation);
@@ -45,6 +62,13 @@ SaturationTable::SaturationTable(const Hydraulics& hydraulics)
         rows_[i] = {pressure[i], pressure_slope[i], permeability[i], permeability_slope[i]};
         mixed_rows_[i] = {gas[i], gas_slope[i], mean[i], mean_slope[i]};
     }
+}
+
+double SaturationTable::stiffness(double saturation) const {
+    const double range = maximum_ - residual_, effective = this->effective(saturation);
+    if (effective >= chord_effective_) return -chord_pressure_ / (range * (1 - chord_effective_));
+    const double held = std::max(effective, saturation_rows::least);
+    return -suction_slope(held, std::log(odds(held)));
 }
 
 }  // namespace talus

@@ -2,6 +2,9 @@
 //
 // Points lie in the order of strips of rows of cells. Strips that are not neighbours share no node: even ones are handled at once, then
 // odd ones, and every node receives its shares in the same order for any number of threads.
+//
+// A region is as wide as a strip is high. Where all points of a region and of its neighbours have been quiet, its points are held: they are
+// not handled.
 #pragma once
 
 #include "background/grid.hpp"
@@ -37,33 +40,63 @@ public:
     [[nodiscard]] bool is_outgrown(double cells) const;
     void drift(double cells) { drift_ += cells; }
 
+    /// Finds which points are held, those whose surroundings have been quiet for so many substeps, and the spans of the others. True: not
+    /// the same as before.
+    bool hold(const FreePoints& points, const Grid& grid, int32_t substeps);
+
+    /// Of nodes that points reach which are not held.
     [[nodiscard]] const std::vector<Span>& spans() const { return spans_; }
 
-    /// handle(strip), in as many threads as there are.
+    /// handle(points), for all of a strip that are not held, in as many threads as there are.
     template <class Handle>
     void for_each_strip(const Handle& handle) const;
 
+    /// handle(points) for all that are held.
+    template <class Handle>
+    void for_each_held(const Handle& handle) const;
+
 private:
+    struct Region {
+        Strip points;
+        bool is_held;
+    };
     bool fit(const FreePoints& points, Grid& grid) const;
+    [[nodiscard]] std::vector<bool> find_quiet(const FreePoints& points, int32_t substeps) const;
     void find_spans(const FreePoints& points, const Grid& grid);
 
     std::unique_ptr<tbb::task_arena> threads_;  // empty: this one alone
-    std::vector<Strip> strips_;
+    size_t strips_ = 0, regions_a_strip_ = 0;
+    std::vector<Region> regions_;
     std::vector<Span> spans_;
     double drift_ = 0;  // cells that a point may have moved since it was arranged
 };
 
 template <class Handle>
 void Arrangement::for_each_strip(const Handle& handle) const {
+    const auto handle_runs = [&](size_t strip) {
+        const size_t last = (strip + 1) * regions_a_strip_;
+        for (size_t r = strip * regions_a_strip_; r < last; ++r) {
+            if (regions_[r].is_held) continue;
+            const size_t first = regions_[r].points.first;
+            while (r + 1 < last && !regions_[r + 1].is_held) ++r;
+            handle(Strip{first, regions_[r].points.last});
+        }
+    };
     for (const size_t parity : {size_t{0}, size_t{1}}) {
-        const size_t strips = (strips_.size() + 1 - parity) / 2;
-        const auto handle_one = [&](size_t s) { handle(strips_[2 * s + parity]); };
+        const size_t strips = (strips_ + 1 - parity) / 2;
+        const auto handle_one = [&](size_t s) { handle_runs(2 * s + parity); };
         if (!threads_) {
             for (size_t s = 0; s < strips; ++s) handle_one(s);
         } else {
             threads_->execute([&] { tbb::parallel_for(size_t{0}, strips, handle_one); });
         }
     }
+}
+
+template <class Handle>
+void Arrangement::for_each_held(const Handle& handle) const {
+    for (const Region& region : regions_)
+        if (region.is_held) handle(region.points);
 }
 
 /// What nodes of `old` hold, where they are in `grid`, which grew from it.

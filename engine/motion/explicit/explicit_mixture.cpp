@@ -39,7 +39,7 @@ struct FluidGift {
 using FluidGiftBlock = std::array<FluidGift, block_size>;
 
 void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
-                const BlockValues& pressure, const BlockValues& mobility, const BlockValues& edge_mobility,
+                const BlockValues& pressure, const BlockValues& flow_mean, const BlockValues& edge_mean,
                 FluidGiftBlock& gift) {
     for (size_t k = 0; k < count; ++k) {
         const double whole = pressure[k] + unit_weight * y[k];
@@ -47,9 +47,9 @@ void fill_gifts(size_t count, const double* y, const double* volume, const doubl
         gift[k].along_x[0] = gift[k].along_y[1] = push;
         gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
         gift[k].value[0] = mass[k] * whole;
-        gift[k].value[1] = mass[k] * mobility[k];
+        gift[k].value[1] = mass[k] * flow_mean[k];
         gift[k].value[2] = volume[k];
-        gift[k].value[3] = mass[k] * edge_mobility[k];
+        gift[k].value[3] = mass[k] * edge_mean[k];
     }
 }
 
@@ -109,10 +109,10 @@ template <Filling filling>
 void ExplicitMixture<filling>::restart() {
     nodes_.start_grid();
     restarted_ = true;
-    nodes_.rained = nodes_.run_off = nodes_.seepage = nodes_.gas.escaped = 0;
     arrange_points();
     std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
     std::fill(nodes_.gas.returned.begin(), nodes_.gas.returned.end(), 0.0);
+    nodes_.rained = nodes_.run_off = nodes_.seepage = nodes_.gas.escaped = 0;
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
@@ -136,14 +136,23 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     nodes_.begin_step();
     if (!is_last) return true;
     arrangement_.for_each_strip([this](Strip strip) { owe_water(strip); });
+    if (filling != Filling::saturated) find_wave_speed();
     return true;
 }
 
-/// Points pass water and gas on to others around the same nodes, until all have the nodes' head. With gas, `fluids` is filled from what
-/// keep_pressures() left.
+/// Points pass water and gas on to others around the same nodes, until all have the nodes' head; where the step `keeps` what it leaves, it is
+/// due to them. With gas, `fluids` is filled from what keep_pressures() left.
 template <Filling filling>
+template <bool keeps>
 void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt,
                                         FluidBlock& fluids) {
+    const auto pass = [&](PointField mass, PointField due, size_t k, double passed) {
+        if constexpr (keeps) {
+            points_[due][first + k] = passed;
+        } else {
+            points_[mass][first + k] += passed;
+        }
+    };
     VelocityBlock evening;
     if constexpr (has_gas) {
         VelocityBlock gas_evening;
@@ -152,8 +161,8 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
         find_potential(first, count, fluids);
         gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
         for (size_t k = 0; k < count; ++k)
-            points_[gas_mass][first + k] +=
-                dt * fluids.gas_volume[k] * (gas_evening.y[k] - gas_evening.x[k] * fluids.gas_potential[k]);
+            pass(gas_mass, gas_due, k,
+                 dt * fluids.gas_volume[k] * (gas_evening.y[k] - gas_evening.x[k] * fluids.gas_potential[k]));
     } else {
         find_fluids(first, count, fluids);
         gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
@@ -161,7 +170,7 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
     const double unit_weight = nodes_.gravity * water_.density;
     for (size_t k = 0; k < count; ++k) {
         const double head = fluids.pressure[k] + unit_weight * points_[position_y][first + k];
-        points_[water_mass][first + k] += dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head);
+        pass(water_mass, water_due, k, dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head));
     }
 }
 
@@ -182,13 +191,13 @@ void ExplicitMixture<filling>::owe_water(Strip strip) {
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
         gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
         for (size_t k = 0; k < count; ++k)
-            points_[water_due][first + k] = nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
+            points_[water_due][first + k] += nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
         if constexpr (has_gas) {
             BlockValues weight;
             find_gas_weights(first, count, weight);
             gather_values(nodes_.grid, nodes_.gas.rates, count, spline, rates);
             for (size_t k = 0; k < count; ++k)
-                points_[gas_due][first + k] =
+                points_[gas_due][first + k] +=
                     nodes_.flow_time * (weight[k] * rates.x[k] + points_[gas_mass][first + k] * rates.y[k]);
         }
     }
@@ -199,17 +208,18 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
     for (size_t k = 0; k < count; ++k) {
         const size_t p = first + k;
         const auto soil = static_cast<size_t>(points_.soil[p]);
-        fluids.edge_mobility[k] = hydraulics_[soil].mobility;
         if constexpr (filling == Filling::saturated) {
             fluids.pressure[k] = water_.bulk_modulus * (share_filled(p) - 1);
-            fluids.mobility[k] = fluids.edge_mobility[k];
+            fluids.permeability[k] = 1;
+            fluids.resistance[k] = 1 / hydraulics_[soil].mobility;
         } else if constexpr (filling == Filling::unsaturated) {
             const double filled = share_filled(p);
             const SaturationTable& table = tables_[soil];
             const SaturationTable::State state = table.at(filled);
             const double excess = std::max(filled / table.maximum() - 1, 0.0);
             fluids.pressure[k] = state.pressure + water_.bulk_modulus * excess;
-            fluids.mobility[k] = fluids.edge_mobility[k] * state.permeability;
+            fluids.permeability[k] = state.permeability;
+            fluids.resistance[k] = 1 / hydraulics_[soil].mobility;
             fluids.suction[k] = -state.pressure;
             fluids.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
         }
@@ -372,8 +382,9 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         scatter_force(nodes_.grid, count, spline, volume, total_xx.data(), total_yy.data(), points_[stress_xy] + first,
                       nodes_.force);
         const double* y = points_[position_y] + first;
-        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, fluids.pressure, fluids.mobility,
-                   fluids.edge_mobility, gift);
+        fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, fluids.pressure,
+                   has_gas ? fluids.mobility : fluids.permeability, has_gas ? fluids.edge_mobility : fluids.resistance,
+                   gift);
         scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
         scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
         if constexpr (has_gas) {
@@ -399,7 +410,11 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         double* x = points_[position_x] + first;
         double* y = points_[position_y] + first;
         spline.find(grid, x, y, count);
-        if constexpr (filling != Filling::saturated) even_out(first, count, spline, dt, fluids);
+        if constexpr (filling == Filling::saturated) {
+            if (keeps) std::fill_n(points_[water_due] + first, count, 0.0);
+        } else {
+            even_out<keeps>(first, count, spline, dt, fluids);
+        }
         gather_divergence(grid, nodes_.velocity, count, spline, dilation);
         take_velocity<keeps>(grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
                              {velocity_x, affine_xx}, gift, taken);
@@ -475,7 +490,12 @@ template <Filling filling>
 void ExplicitMixture<filling>::arrange_points() {
     const Grid old = nodes_.grid;
     forget_left_nodes(nodes_.returned);
-    if constexpr (has_gas) forget_left_nodes(nodes_.gas.returned);
+    const double returned = nodes_.total(nodes_.returned);
+    double gas_returned = 0;
+    if constexpr (has_gas) {
+        forget_left_nodes(nodes_.gas.returned);
+        gas_returned = nodes_.total(nodes_.gas.returned);
+    }
     if (arrangement_.arrange(points_, nodes_.grid)) {
         for (auto* field : {&nodes_.velocity, &nodes_.liquid_velocity, &nodes_.flux, &nodes_.rates, &nodes_.evening})
             move_nodes(*field, old, nodes_.grid);
@@ -484,6 +504,8 @@ void ExplicitMixture<filling>::arrange_points() {
         nodes_.resize();
     }
     nodes_.spans = arrangement_.spans();
+    nodes_.seepage += nodes_.flow_time * (returned - nodes_.total(nodes_.returned));
+    if constexpr (has_gas) nodes_.gas.escaped += nodes_.flow_time * (gas_returned - nodes_.total(nodes_.gas.returned));
     fall_rain();
     find_wave_speed();
 }
@@ -508,6 +530,24 @@ void ExplicitMixture<filling>::fall_rain() {
     }
 }
 
+/// Retention may hold water more stiffly than water is. Bishop's stress feels that; flow does as far as drag lets it, which it is slower by:
+/// half the step that would just be stable is size^2 n / (2 stiffness lambda).
+template <Filling filling>
+typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_stiffness(size_t p,
+                                                                                          double porosity) const {
+    const double bulk_modulus = water_.bulk_modulus;
+    if constexpr (filling == Filling::saturated) return {bulk_modulus, bulk_modulus / water_.density};
+    const auto soil = static_cast<size_t>(points_.soil[p]);
+    const SaturationTable& table = tables_[soil];
+    const double filled = share_filled(p), stiffness = filled * table.stiffness(filled);
+    const bool is_borne = water_.pore_stress == PoreStress::bishop;
+    const double borne = is_borne ? std::clamp(table.effective(filled), 0.0, 1.0) * stiffness : 0.0;
+    const double mobility = hydraulics_[soil].mobility * table.at(filled).permeability;
+    const double creep = 2 * stiffness * mobility / (porosity * nodes_.grid.cell_size);
+    return {std::max(bulk_modulus, borne),
+            std::max(bulk_modulus / water_.density, std::min(stiffness / water_.density, creep * creep))};
+}
+
 /// Of the points as they are: the square root of the sum of the waves' squares without drag, which bounds each. The gas's own is R T / M at
 /// any pressure, and less where the water gives way.
 template <Filling filling>
@@ -518,8 +558,9 @@ void ExplicitMixture<filling>::find_wave_speed() {
         const double solid_density = points_[solid_mass][p] / points_[point_volume][p];
         const double grains = solid_density / hydraulics_[soil].grain_density;
         const double frame = soils_[soil].elastic.lame + 2 * soils_[soil].elastic.shear;
-        const double fluid = water_.bulk_modulus / (1 - grains);
-        double squares = (frame + grains * grains * fluid) / solid_density + water_.bulk_modulus / water_.density;
+        const PoreStiffness pores = pore_stiffness(p, 1 - grains);
+        const double fluid = pores.borne / (1 - grains);
+        double squares = (frame + grains * grains * fluid) / solid_density + pores.flow_speed_squared;
         if constexpr (has_gas) squares += gas_.atmosphere / gas_.density;
         wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
     }

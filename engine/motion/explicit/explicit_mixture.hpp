@@ -87,9 +87,16 @@ private:
     static constexpr bool has_gas = filling == Filling::three_phase;
 
     struct FluidBlock {
-        BlockValues pressure, mobility, edge_mobility, suction, effective_saturation;   // of the water
-        BlockValues saturation, gas_pressure, gas_potential, gas_mobility, gas_volume;  // where it moves
+        BlockValues pressure, permeability, resistance, suction, effective_saturation;  // of the water
+        BlockValues mobility, edge_mobility, saturation, gas_pressure, gas_potential, gas_mobility,
+            gas_volume;  // where gas moves
     };
+
+    struct PoreStiffness {
+        double borne;               // of what the skeleton bears, Pa
+        double flow_speed_squared;  // m2/s2, of the liquid through the skeleton
+    };
+    [[nodiscard]] PoreStiffness pore_stiffness(size_t p, double porosity) const;
 
     void arrange_points();
     /// Of the pores, by the point's water; above 1 it is pressed together.
@@ -101,6 +108,7 @@ private:
     [[nodiscard]] double pore_stress(const FluidBlock& fluids, size_t k) const;
     void find_wave_speed();
     void fall_rain();
+    template <bool keeps>
     void even_out(size_t first, size_t count, const SplineBlock& spline, double dt, FluidBlock& fluids);
     void owe_water(Strip strip);
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
@@ -131,7 +139,7 @@ private:
     bool restarted_ = false;  // and the points not yet got what is due
     bool yields_ = false;     // any soil
     std::function<double(double)> rain_;
-    double wave_speed_ = 0;  // m/s, the fastest when the points were arranged, were all pores full
+    double wave_speed_ = 0;  // m/s, the fastest when the points were arranged or looked at, were all pores full
 };
 
 extern template class ExplicitMixture<Filling::saturated>;

@@ -6,10 +6,16 @@
 #include <cmath>
 
 namespace talus {
+namespace {
+
+constexpr int32_t quiet_substeps = 1000;  // a wave has crossed some 500 cells
+
+}  // namespace
 
 ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
-                               FreePoints points, int32_t threads)
-    : soils_(std::move(soils)), points_(std::move(points)), arrangement_(threads) {
+                               FreePoints points, int32_t threads, double rest_speed)
+    : soils_(std::move(soils)), points_(std::move(points)), arrangement_(threads), rest_speed_(rest_speed) {
+    if (rest_speed > 0) points_.quiet.resize(points_.count);
     for (const ExplicitSoil& soil : soils_) yields_ = yields_ || soil.yields;
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
@@ -20,6 +26,7 @@ ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double grav
 
 void ExplicitMotion::restart() {
     nodes_.start_grid();
+    substeps_ = 0;
     arrange_points();
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
@@ -39,8 +46,62 @@ bool ExplicitMotion::step(double dt, bool is_last) {
             move_and_give<false>(strip, dt);
         }
     });
+    ++substeps_;
+    if (is_last && rest_speed_ > 0) {
+        arrangement_.for_each_strip([this](Strip strip) { count_quiet(strip); });
+        substeps_ = 0;
+        if (arrangement_.hold(points_, nodes_.grid, quiet_substeps)) {
+            hold_points();
+            arrangement_.for_each_strip([this](Strip strip) { give(strip); });
+        }
+    }
     nodes_.begin_step();
     return true;
+}
+
+void ExplicitMotion::count_quiet(Strip strip) {
+    const double* x = points_[velocity_x];
+    const double* y = points_[velocity_y];
+    for (size_t p = strip.first; p < strip.last; ++p) {
+        const bool is_quiet = x[p] * x[p] + y[p] * y[p] < rest_speed_ * rest_speed_;
+        points_.quiet[p] = is_quiet ? std::min(points_.quiet[p] + substeps_, quiet_substeps) : 0;
+    }
+}
+
+/// What held points do to the nodes is found once; nodes that no other points reach stand still.
+void ExplicitMotion::hold_points() {
+    const size_t nodes = nodes_.grid.nodes();
+    nodes_.spans = arrangement_.spans();
+    nodes_.held.assign(nodes, {});
+    std::vector<NodeVector> force(nodes);
+    arrangement_.for_each_held([&](Strip strip) { give_held(strip, force); });
+    for (size_t i = 0; i < nodes; ++i) {
+        nodes_.held[i].x = force[i].x;
+        nodes_.held[i].y = force[i].y - nodes_.gravity * nodes_.held[i].mass;
+    }
+    nodes_.for_each_mirror([this](NodePair pair, const Mirror& mirror) {
+        move_inside(nodes_.held[pair.inside], nodes_.held[pair.beyond], mirror);
+    });
+    nodes_.momentum.assign(nodes, {});
+    nodes_.force.assign(nodes, {});
+    std::vector<NodeVector> velocity(nodes);
+    nodes_.for_each_node([&](size_t i) { velocity[i] = nodes_.velocity[i]; });
+    nodes_.velocity = std::move(velocity);
+}
+
+void ExplicitMotion::give_held(Strip strip, std::vector<NodeVector>& force) {
+    SplineBlock spline;
+    GiftBlock gift;
+    for (const PointField name : {velocity_x, velocity_y, affine_xx, affine_xy, affine_yx, affine_yy})
+        std::fill(points_[name] + strip.first, points_[name] + strip.last, 0.0);
+    for (size_t first = strip.first; first < strip.last; first += block_size) {
+        const size_t count = std::min(block_size, strip.last - first);
+        spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
+        for (size_t k = 0; k < count; ++k) gift[k].set(points_[solid_mass][first + k], {0, 0}, {0, 0}, {0, 0});
+        give_momentum(nodes_.grid, count, spline, gift, nodes_.held);
+        scatter_force(nodes_.grid, count, spline, points_[point_volume] + first, points_[stress_xx] + first,
+                      points_[stress_yy] + first, points_[stress_xy] + first, force);
+    }
 }
 
 void ExplicitMotion::stress_and_forces(Strip strip, double dt) {
@@ -110,6 +171,8 @@ void ExplicitMotion::arrange_points() {
         nodes_.force.assign(nodes_.grid.nodes(), {});
     }
     nodes_.spans = arrangement_.spans();
+    if (rest_speed_ > 0 && (arrangement_.hold(points_, nodes_.grid, quiet_substeps) || !nodes_.held.empty()))
+        hold_points();
     find_wave_speed();
 }
 
@@ -126,7 +189,7 @@ void ExplicitMotion::find_wave_speed() {
 double ExplicitMotion::critical_step() const {
     constexpr double share =
         0.5;  // energy is kept within 1 % over a period of 200 cells' length (docs/verification.md)
-    return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.largest_speed());
+    return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.start_speed);
 }
 
 Energies energies_of(const FreePoints& points, const std::vector<ExplicitSoil>& soils, double gravity) {

@@ -27,9 +27,10 @@ Energies energies_of(const FreePoints& points, const std::vector<ExplicitSoil>& 
 
 class ExplicitMotion {
 public:
-    /// The points' fields must be sized. Walls must lie a whole number of cells apart.
+    /// The points' fields must be sized. Walls must lie a whole number of cells apart. Points that have been slower than the rest speed
+    /// (m/s) for 1000 substeps, with all others up to 8 cells away, are held: they have no velocity and keep their stress. 0: none.
     ExplicitMotion(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
-                   FreePoints points, int32_t threads);
+                   FreePoints points, int32_t threads, double rest_speed = 0);
 
     /// Carries the points dt (s) on; dt is at most critical_step(). Where this is not the last of several steps, the points' velocity
     /// is left to the nodes. False: a velocity is no number, or carries a point across several cells, and the points were not moved.
@@ -50,6 +51,9 @@ public:
 
 private:
     void arrange_points();
+    void count_quiet(Strip strip);
+    void hold_points();
+    void give_held(Strip strip, std::vector<NodeVector>& force);
     void find_wave_speed();
     void stress_and_forces(Strip strip, double dt);
     template <bool keeps>
@@ -61,6 +65,8 @@ private:
     GridMotion nodes_;
     Arrangement arrangement_;
     bool yields_ = false;    // any soil
+    double rest_speed_ = 0;  // m/s
+    int32_t substeps_ = 0;   // since quiet ones were counted
     double wave_speed_ = 0;  // m/s, the fastest when the points were arranged
 };
 

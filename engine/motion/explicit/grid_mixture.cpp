@@ -29,6 +29,20 @@ void add_mirrored(NodeGradients& inside, const Mirror& mirror, const NodeGradien
     inside.edge_y += mirror.y * beyond.edge_y;
 }
 
+void add(NodeMeans& inside, const NodeMeans& beyond) {
+    inside.push += beyond.push;
+    inside.permeability += beyond.permeability;
+    inside.volume += beyond.volume;
+    inside.resistance += beyond.resistance;
+}
+
+void add(NodeMeansBesideGas& inside, const NodeMeansBesideGas& beyond) {
+    inside.push += beyond.push;
+    inside.mobility += beyond.mobility;
+    inside.volume += beyond.volume;
+    inside.edge_mobility += beyond.edge_mobility;
+}
+
 double dot(const NodeVector& a, const NodeVector& b) { return a.x * b.x + a.y * b.y; }
 
 }  // namespace
@@ -96,10 +110,13 @@ void GridMixture<has_gas>::begin_step() {
     });
     for_each_node([this](size_t i) {
         const NodeMomentum &solid = momentum[i], &liquid = liquid_momentum[i];
+        if (!(solid.mass > 0)) {  // the last point has left: what came to its node has left with the surface
+            seepage += flow_time * returned[i];
+            returned[i] = 0;
+        }
         const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
         velocity[i] = {solid.x * inverse, solid.y * inverse};
         liquid_velocity[i] = velocity[i];
-        if (!(solid.mass > 0)) seepage += flow_time * returned[i];
         if (liquid.mass > 0) liquid_velocity[i] = {liquid.x / liquid.mass, liquid.y / liquid.mass};
         rates[i] = {solid.more * inverse, (liquid.more + returned[i]) * inverse};
         if constexpr (has_gas) {
@@ -152,12 +169,8 @@ void GridMixture<has_gas>::fold_forces() {
     for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
         add_mirrored(gradients[nodes.inside], mirror, gradients[nodes.beyond]);
         gradients[nodes.beyond] = {};
-        NodeMeans &mean_in = means[nodes.inside], &mean_out = means[nodes.beyond];
-        mean_in.push += mean_out.push;
-        mean_in.mobility += mean_out.mobility;
-        mean_in.edge_mobility += mean_out.edge_mobility;
-        mean_in.volume += mean_out.volume;
-        mean_out = {};
+        add(means[nodes.inside], means[nodes.beyond]);
+        means[nodes.beyond] = {};
         if constexpr (has_gas) {
             // What is left beyond the wall nobody reads: begin_step() clears it.
             add_mirrored(gas.gradients[nodes.inside], mirror, gas.gradients[nodes.beyond]);
@@ -174,6 +187,13 @@ void GridMixture<has_gas>::fold_forces() {
 template <bool has_gas>
 bool GridMixture<has_gas>::is_at_edge(size_t node) const {
     return means[node].volume > 0 && means[node].volume < full_share * cell_volume();
+}
+
+template <bool has_gas>
+double GridMixture<has_gas>::total(const std::vector<double>& values) const {
+    double sum = 0;
+    for_each_node([&](size_t i) { sum += values[i]; });
+    return sum;
 }
 
 template <bool has_gas>
@@ -255,7 +275,7 @@ template <bool has_gas>
 void GridMixture<has_gas>::solve(size_t node, double dt) {
     const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
     const NodeGradients& sums = gradients[node];
-    const NodeMeans& mean = means[node];
+    const Means& mean = means[node];
     flux[node] = {};
     returned[node] = 0;
     capacity[node] = 0;
@@ -264,9 +284,10 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     if (!(mass > 0) || !(mean.volume > 0)) return;
     const double push = mean.push / mass;
     const double liquid_content = liquid_mass / (liquid_density * mean.volume);
-    const auto drag_of = [&](double mobility) { return dt * liquid_content * mass / (mobility * liquid_density); };
-    const auto conductance_of = [&](double mobility) { return dt * liquid_content / (1 + drag_of(mobility)); };
-    const double drag = drag_of(mean.mobility), conductance = conductance_of(mean.mobility);
+    const auto drag_of = [&](double lambda) { return dt * liquid_content / (lambda * liquid_density); };
+    const double drag = drag_of(mean.lambda(mass));
+    const double conductance = dt * liquid_content / (1 + drag);
+    const double edge_conductance = dt * liquid_content / (1 + drag_of(mean.edge_lambda(mass)));
     const double spread = evening_share * conductance * mean.volume / (cell_volume() * mass);
     evening[node] = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
@@ -333,7 +354,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     if (!(edge.distance > 0)) return;
     const double carried =
         returned[node] - (conductance / mean.volume - evened) * dot(edge.stretched(pushed), outwards);
-    const double drawn = conductance_of(mean.edge_mobility) * edge.length * (edge_head - push) / edge.distance;
+    const double drawn = edge_conductance * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
     if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed);
 }

@@ -20,6 +20,7 @@
 #include "motion/explicit/ground_edge.hpp"
 #include "motion/explicit/walled_grid.hpp"
 
+#include <type_traits>
 #include <vector>
 
 namespace talus {
@@ -32,11 +33,24 @@ struct NodeGradients {
 
 /// Sums over points with the values of the splines.
 struct NodeMeans {
-    double push = 0;      ///< of N m (p + rho_l g y)
-    double mobility = 0;  ///< of N m lambda, lambda = kappa / mu
-    double volume = 0;    ///< of N V
-    double edge_mobility =
-        0;  ///< of N m lambda on the way to the edge: of full pores; with gas, the mean over the suctions on it
+    double push = 0;          ///< of N m (p + rho_l g y)
+    double permeability = 0;  ///< of N m k_r
+    double volume = 0;        ///< of N V
+    double resistance = 0;    ///< of N m mu / kappa
+
+    [[nodiscard]] double lambda(double) const { return permeability / resistance; }
+    [[nodiscard]] double edge_lambda(double mass) const { return mass / resistance; }  ///< of full pores
+};
+
+/// The same beside a gas that moves.
+struct NodeMeansBesideGas {
+    double push = 0;           ///< of N m (p + rho_l g y)
+    double mobility = 0;       ///< of N m lambda
+    double volume = 0;         ///< of N V
+    double edge_mobility = 0;  ///< of N m lambda on the way to the edge: the mean over the suctions on it
+
+    [[nodiscard]] double lambda(double mass) const { return mobility / mass; }
+    [[nodiscard]] double edge_lambda(double mass) const { return edge_mobility / mass; }
 };
 
 /// Sums over points of what concerns their gas.
@@ -89,6 +103,8 @@ struct OpenSurface {
 
 template <bool has_gas>
 struct GridMixture : WalledGrid {
+    using Means = std::conditional_t<has_gas, NodeMeansBesideGas, NodeMeans>;
+
     double gravity = 0;         ///< m/s2, downwards
     double liquid_density = 0;  ///< kg/m3
     double edge_pressure = 0;   ///< on the ground's edge, Pa
@@ -108,7 +124,7 @@ struct GridMixture : WalledGrid {
         rates;  ///< that points share: x, volumetric strain, 1/s; y, water gained, kg/s per kg of solid
     std::vector<NodeVector> force;  ///< of the total stress, and the weight
     std::vector<NodeGradients> gradients;
-    std::vector<NodeMeans> means;
+    std::vector<Means> means;
     std::vector<NodeVector> evening;  ///< of the points' heads: x, kg/s per kg of solid and Pa; y, times the node's
     std::vector<double> returned;     ///< F_j . e_j and what crosses the surface, kg/s
     std::vector<double> capacity;  ///< of the edge at no pressure there to let water in, kg/s; negative: it comes out
@@ -123,6 +139,7 @@ struct GridMixture : WalledGrid {
     void resize();
     void begin_step();
     void end_step(double dt);
+    [[nodiscard]] double total(const std::vector<double>& values) const;  ///< over the nodes
     [[nodiscard]] double largest_speed() const { return speed_bound(*this, momentum, velocity, least_mass); }
 
 private:

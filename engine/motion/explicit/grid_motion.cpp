@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace talus {
 /// Beyond a wall the nodes move as the mirrored ground would, so that what is interpolated on the wall is zero across it, and along it
@@ -20,10 +19,14 @@ void GridMotion::begin_step() {
         add_mirrored(force[nodes.inside], sign, force[nodes.beyond]);
         force[nodes.beyond] = {};
     });
-    for_each_node([this](size_t i) {
+    SpeedBound bound(least_mass);
+    for_each_node([this, &bound](size_t i) {
+        if (!held.empty() && momentum[i].mass > 0) momentum[i].mass += held[i].mass;
         const double inverse = momentum[i].mass > 0 ? 1 / momentum[i].mass : 0;
         velocity[i] = {momentum[i].x * inverse, momentum[i].y * inverse};
+        bound.add(momentum[i].mass, velocity[i]);
     });
+    start_speed = bound.value();  // walls make no node faster
     slide(false);
     mirror();
 }
@@ -33,13 +36,18 @@ void GridMotion::end_step(double dt) {
         [this](NodePair nodes, const Mirror& sign) { add_mirrored(force[nodes.inside], sign, force[nodes.beyond]); });
     for_each_node([this, dt](size_t i) {
         const double response = momentum[i].mass > 0 ? dt / momentum[i].mass : 0;
+        if (!held.empty()) force[i] = {force[i].x + held[i].x, force[i].y + held[i].y};
         velocity[i].x += response * force[i].x;
         velocity[i].y += response * force[i].y;
     });
     slide(true);
     mirror();
-    speed = largest_speed();
-    for_each_node([this](size_t i) { momentum[i] = {}; });
+    SpeedBound bound(least_mass);
+    for_each_node([this, &bound](size_t i) {
+        bound.add(momentum[i].mass, velocity[i]);
+        momentum[i] = {};
+    });
+    speed = bound.value();
 }
 
 void GridMotion::slide(bool with_friction) {
@@ -70,21 +78,11 @@ void GridMotion::meet(const Wall& wall, size_t axis, double outwards, NodePair n
     in.*along = out.*along = sliding;
 }
 
-// A point of mass m sees at most M / m of the velocity of a node of mass M. Where M is below a share of the least m, the velocity counts as
-// that much less; of nine such nodes together a point sees at most nine shares of the largest one counted.
 double speed_bound(const WalledGrid& grid, const std::vector<NodeMomentum>& momentum,
                    const std::vector<NodeVector>& velocity, double least_mass) {
-    constexpr double light_share = 1.0 / 900;
-    const double per_mass = 1 / std::max(light_share * least_mass, std::numeric_limits<double>::min());
-    double largest = 0, sum = 0;  // the largest of numbers and NaN may be a number, their sum is none
-    grid.for_each_node([&](size_t i) {
-        const double weight = std::min(momentum[i].mass * per_mass, 1.0);
-        const double x = weight * velocity[i].x, y = weight * velocity[i].y;
-        const double square = x * x + y * y;
-        largest = std::max(largest, square);
-        sum += square;
-    });
-    return std::isfinite(sum) ? (1 + 9 * light_share) * std::sqrt(largest) : sum;
+    SpeedBound bound(least_mass);
+    grid.for_each_node([&](size_t i) { bound.add(momentum[i].mass, velocity[i]); });
+    return bound.value();
 }
 
 }  // namespace talus

@@ -3,8 +3,11 @@
 
 #include "motion/explicit/walled_grid.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace talus {
@@ -39,26 +42,49 @@ inline void move_inside(NodeMomentum& inside, NodeMomentum& beyond, const Mirror
     beyond = {};
 }
 
-/// A bound of the speed that the nodes give a point, m/s; no number where a velocity is none. Nodes that only the rim of a spline reaches
-/// have next to no mass and run away, but points see as little of them. `least_mass`: kg, of a point.
+/// A bound of the speed that nodes give a point. Nodes that only the rim of a spline reaches have next to no mass and run away, but points see
+/// as little of them: a point of mass m sees at most M / m of the velocity of a node of mass M. Where M is below a share of the least m, the
+/// velocity counts as that much less; of nine such nodes together a point sees at most nine shares of the largest one counted.
+class SpeedBound {
+public:
+    explicit SpeedBound(double least_mass)  ///< kg, of a point
+        : per_mass_(1 / std::max(light_share * least_mass, std::numeric_limits<double>::min())) {}
+
+    void add(double mass, const NodeVector& velocity) {
+        const double weight = std::min(mass * per_mass_, 1.0);
+        const double x = weight * velocity.x, y = weight * velocity.y, square = x * x + y * y;
+        largest_ = std::max(largest_, square);
+        sum_ += square;
+    }
+    /// m/s; no number where a velocity is none.
+    [[nodiscard]] double value() const {
+        return std::isfinite(sum_) ? (1 + 9 * light_share) * std::sqrt(largest_) : sum_;
+    }
+
+private:
+    static constexpr double light_share = 1.0 / 900;
+    double per_mass_, largest_ = 0, sum_ = 0;  // the largest of numbers and NaN may be a number, their sum is none
+};
+
 double speed_bound(const WalledGrid& grid, const std::vector<NodeMomentum>& momentum,
                    const std::vector<NodeVector>& velocity, double least_mass);
 
 struct GridMotion : WalledGrid {
     double gravity = 0;                  ///< m/s2, downwards
     double least_mass = 0;               ///< kg, of a point
-    double speed = 0;                    ///< m/s, largest_speed() at the end of the step
+    double speed = 0;                    ///< m/s, a bound of the points' in the step, from its end
+    double start_speed = 0;              ///< likewise, from its start
     std::vector<NodeMomentum> momentum;  ///< of the points where they came to lie
     std::vector<NodeVector> velocity;
     std::vector<NodeVector> force;  ///< the weight at first, then the stress's too, N
+    std::vector<NodeMomentum>
+        held;  ///< of points that are held: the mass, and x, y, force of their stress and weight, N; empty: none
 
     /// Velocities from momenta, and the nodes' weight as their first force.
     void begin_step();
 
     /// Velocities at the end of a step of dt (s). Momenta are zero afterwards.
     void end_step(double dt);
-
-    [[nodiscard]] double largest_speed() const { return speed_bound(*this, momentum, velocity, least_mass); }
 
 private:
     void mirror();

@@ -8,9 +8,14 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace talus {
+
+/// Of a soil that does not yield, beside others that do.
+inline constexpr MohrCoulomb boundless{std::numeric_limits<double>::infinity(), 0, 1, 0,
+                                       std::numeric_limits<double>::infinity()};
 
 /// How a soil deforms, yields and softens. Its strength falls in proportion to the slip on a shear band, sqrt(3) times the plastic shear
 /// strain times the cell's size: the band is as wide as the cells allow, and what it dissipates does not depend on them
@@ -18,7 +23,7 @@ namespace talus {
 struct ExplicitSoil {
     Elasticity elastic{};
     bool yields = false;
-    MohrCoulomb strength{};            ///< without slip
+    MohrCoulomb strength = boundless;  ///< without slip
     double residual_cohesion = 0;      ///< Pa, after softening_slip
     double residual_sin_friction = 0;  ///< -, likewise
     double softening_slip = 0;         ///< m; 0: it does not soften

@@ -1,0 +1,46 @@
+"""What a point that is held at rest costs beside one that moves: the cohesive slope with a long floor in front of it."""
+
+import time
+
+import numpy
+import talus
+from rows import read_scene
+
+REST_SPEED = 1e-3  # m/s
+STEP, SETTLED, STEPS = 0.1, 60, 100  # s; steps of the host, of which those from SETTLED on are timed
+
+
+def scene_of(rest_speed):
+    scene = read_scene("cohesive_slope")
+    scene["ground"]["section"].update(terrain=[[0, 5], [6, 5], [11, 1], [100, 1]], base=[[0, 0], [100, 0]])
+    if rest_speed:
+        scene["dynamics"]["restSpeed"] = rest_speed
+    scene["boundaries"].append({"name": "right", "side": "right", "motion": "roller"})
+    del scene["probes"]
+    return scene
+
+
+def measure(rest_speed):
+    """Seconds a substep, points and those held, once the floor is quiet; and what came of the slide."""
+    engine = talus.Engine(talus.Scene.from_json(scene_of(rest_speed)))
+    seconds, substeps, held = 0.0, 0, []
+    for step in range(STEPS):
+        begun = time.process_time()
+        report = engine.step(STEP)
+        if step < SETTLED:
+            continue
+        seconds += time.process_time() - begun
+        substeps += report["motion_substeps"]
+        held.append(int((numpy.abs(engine.read("velocity")).max(axis=1) == 0).sum()))
+    return {"points": engine.describe()["points"], "held": sum(held) / len(held), "seconds_a_substep": seconds / substeps,
+            "run_out": report["run_out"], "dissipated_energy": report["dissipated_energy"]}
+
+
+def run():
+    """Nanoseconds of a substep of points that move and that are held; what holding changes."""
+    free, held = measure(0.0), measure(REST_SPEED)
+    moving = free["seconds_a_substep"] / free["points"]
+    resting = (held["seconds_a_substep"] - moving * (held["points"] - held["held"])) / held["held"]
+    changes = {name: abs(held[name] / free[name] - 1) for name in ("run_out", "dissipated_energy")}
+    return {"rest_speed": REST_SPEED, "points": held["points"], "held": held["held"], "moving_ns": 1e9 * moving,
+            "resting_ns": 1e9 * resting, "ratio": resting / moving, "changes": changes}
