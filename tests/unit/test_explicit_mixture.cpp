@@ -130,6 +130,24 @@ TEST_CASE("wet ground that falls apart loses no water") {
     CHECK(column.rained() > 0);
 }
 
+TEST_CASE("what shared pores read of a soil is that of its curves") {
+    const Hydraulics soil = loam();
+    const HydraulicTable curves(soil);
+    const SaturationTable table(soil, 2e9);
+    constexpr double m = 1 - 1 / 1.2;
+    for (const double suction : {5.0, 300.0, 2e4, 1e6}) {
+        const HydraulicState state = curves.at(-suction);
+        const double wet = table.effective(state.saturation);
+        const SaturationTable::MixedState found = table.mixed_at(wet, std::log(SaturationTable::odds(wet)));
+        CHECK(found.suction == doctest::Approx(suction).epsilon(1e-4));
+        CHECK(found.permeability == doctest::Approx(state.permeability).epsilon(1e-4));
+        CHECK(found.mean_permeability == doctest::Approx(-state.potential / suction).epsilon(1e-4));
+        if (suction < curves.chord()) continue;  // there k_rg is a chord too
+        const double parker = std::sqrt(1 - wet) * std::pow(1 - std::pow(wet, 1 / m), 2 * m);
+        CHECK(found.gas_permeability == doctest::Approx(parker).epsilon(1e-4));
+    }
+}
+
 TEST_CASE("rain on an unsaturated column enters it, and no water is lost") {
     constexpr double cell_size = 0.05;
     const Hydraulics soil = loam();

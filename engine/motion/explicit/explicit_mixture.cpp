@@ -269,16 +269,20 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
 template <Filling filling>
 void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidBlock& fluids) const {
     const double specific = gas_.atmosphere / gas_.density, per_atmosphere = 1 / gas_.atmosphere;
-    const double* mass = points_[gas_mass] + first;
-    const double* y = points_[position_y] + first;
+    const double density = gas_.density, gravity = nodes_.gravity;
+    const double* __restrict mass = points_[gas_mass] + first;
+    const double* __restrict y = points_[position_y] + first;
+    const double* __restrict pressure = fluids.gas_pressure.data();
+    double* __restrict volume = fluids.gas_volume.data();
+    double* __restrict potential = fluids.gas_potential.data();
     for (size_t k = 0; k < count; ++k) {
-        const double relative = std::max(1 + per_atmosphere * fluids.gas_pressure[k], least_gas_pressure);
-        fluids.gas_volume[k] = mass[k] / (gas_.density * relative);
-        fluids.gas_potential[k] = relative;
+        const double relative = std::max(1 + per_atmosphere * pressure[k], least_gas_pressure);
+        volume[k] = mass[k] / (density * relative);
+        potential[k] = relative;
     }
-    LogValues(fluids.gas_potential.data()) = LogValues(fluids.gas_potential.data()).log();
-    for (size_t k = 0; k < count; ++k)
-        fluids.gas_potential[k] = specific * fluids.gas_potential[k] + nodes_.gravity * y[k];
+    LogValues logarithm(potential);
+    logarithm = logarithm.log();
+    for (size_t k = 0; k < count; ++k) potential[k] = specific * potential[k] + gravity * y[k];
 }
 
 /// What flowed to the points in the last step.
@@ -291,7 +295,8 @@ void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const Veloci
     }
     BlockValues weight;
     find_gas_weights(first, count, weight);
-    for (size_t k = 0; k < count; ++k) mass[k] += nodes_.flow_time * (weight[k] * rates.x[k] + mass[k] * rates.y[k]);
+    const double time = nodes_.flow_time;
+    for (size_t k = 0; k < count; ++k) mass[k] += time * (weight[k] * rates.x[k] + mass[k] * rates.y[k]);
 }
 
 template <Filling filling>
