@@ -85,6 +85,27 @@ def water_cases():
     yield Case("dynamic/undrained", wet_bank(2e9, conductivity=1e-13, poisson=0.4999), SLIDE)
 
 
+def gassy_bank(**numbers):
+    scene = wet_bank(**numbers)
+    scene["physics"]["gas"] = True
+    return scene
+
+
+def gas_cases():
+    yield Case("dynamic_gas/benign", gassy_bank(), SLIDE)
+    yield Case("dynamic_gas/soft", gassy_bank(young=1e5, poisson=0), SLIDE, may_be_refused="too soft for what it bears",
+               why="its pores are closed")
+    yield Case("dynamic_gas/dry", gassy_bank(table=-1e3), SLIDE)
+    yield Case("dynamic_gas/full", gassy_bank(table=2.0), SLIDE)
+    yield Case("dynamic_gas/rain", gassy_bank(rain=1e-3, table=-1.0), [["step", 0.1, 20]])
+    for conductivity in (1e-18, 1e-9, 0.3):
+        yield Case(f"dynamic_gas/K_{conductivity:g}", gassy_bank(conductivity=conductivity), SLIDE)
+    for alpha, n in ((1e-7, 1.03), (1e-2, 6), (1e-7, 6)):
+        yield Case(f"dynamic_gas/{alpha:g}_{n:g}", gassy_bank(alpha=alpha, n=n, table=-1.0), SLIDE)
+    yield Case("dynamic_gas/porous", gassy_bank(porosity=0.9), SLIDE)
+    yield Case("dynamic_gas/dense", gassy_bank(porosity=0.05), SLIDE)
+
+
 def strength_cases():
     softening = {"residualCohesion": 0.0, "residualFrictionAngle": 1.0, "slip": 1e-4}
     soil = dry(earth(cohesion=2e3, friction=30))
@@ -109,5 +130,6 @@ def cases():
         yield from sweep.cases()
     yield from flight_cases()
     yield from water_cases()
+    yield from gas_cases()
     yield from strength_cases()
     yield from time_cases()

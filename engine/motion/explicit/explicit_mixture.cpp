@@ -102,6 +102,7 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
     nodes_.liquid_density = water.density;
     nodes_.gas.density = gas.density;
     nodes_.least_mass = points_.least(solid_mass);
+    nodes_.evens = filling != Filling::saturated;
     restart();
 }
 
@@ -256,11 +257,11 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
         fluids.mobility[k] = hydraulics_[soil].mobility * found.state.permeability;
         fluids.edge_mobility[k] = hydraulics_[soil].mobility * found.state.mean_permeability;
         fluids.suction[k] = found.state.suction;
-        fluids.effective_saturation[k] = std::clamp(effective[k], 0.0, 1.0);
         fluids.gas_pressure[k] = found.gas_pressure;
         fluids.gas_mobility[k] =
             hydraulics_[soil].gas_mobility * std::max(found.state.gas_permeability, least_gas_permeability);
         fluids.saturation[k] = 1 - found.gas_share;
+        fluids.effective_saturation[k] = std::clamp(table.effective(fluids.saturation[k]), 0.0, 1.0);
     }
     find_potential(first, count, fluids);
 }

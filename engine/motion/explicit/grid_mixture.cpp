@@ -10,7 +10,7 @@ constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is
 
 /// Of what Darcy's law lets pass between the halves of a cell. Nodes do not see what one point has too much and its neighbour too little:
 /// it would grow by chance from step to step, until the pressure of the fuller one counts (docs/verification.md).
-constexpr double evening_share = 0.5;
+constexpr double evening_share = 1.0;
 
 /// Of smooth fields, the nodes' means seen by points again differ from the points' own by this many squares of a cell times the Laplacian: twice half
 /// of the splines' second moment. As much of Darcy's flow does evening them out pass on already.
@@ -291,7 +291,7 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     const double spread = evening_share * conductance * mean.volume / (cell_volume() * mass);
     evening[node] = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
-    const double evened = has_gas ? smoothing * evening_share * conductance / mean.volume : 0.0;
+    const double evened = evens ? smoothing * evening_share * conductance / mean.volume : 0.0;
     const double moved = liquid_mass / (1 + drag);
     double coupled = mass + moved * drag;
     [[maybe_unused]] GasAnswer answer;
@@ -313,8 +313,8 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
         solid.*c = (whole - moved * alone) / coupled;
         liquid.*c = (alone + drag * solid.*c) / (1 + drag);
         flux[node].*c = liquid_mass / mean.volume * (liquid.*c - solid.*c);
+        flux[node].*c -= evened * pushed.*c;
         if constexpr (has_gas) {
-            flux[node].*c -= evened * pushed.*c;
             gas.velocity[node].*c = (gas_alone + answer.drag * solid.*c) / (1 + answer.drag);
             gas.flux[node].*c = answer.density * (gas.velocity[node].*c - solid.*c) - answer.evened * gas_pushed.*c;
         }

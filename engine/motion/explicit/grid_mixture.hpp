@@ -110,6 +110,7 @@ struct GridMixture : WalledGrid {
     double edge_pressure = 0;   ///< on the ground's edge, Pa
     double least_mass = 0;      ///< kg, of a point's solid
     double speed = 0;           ///< m/s, the solid's speed_bound() at the end of the step
+    bool evens = false;         ///< points of a cell even out what they hold
     bool immersed = false;      ///< the edge stands in water without pressure: it may enter too
     double cell_volume() const { return grid.cell_size * grid.cell_size; }
     double height_of(size_t node) const {  ///< y, m
