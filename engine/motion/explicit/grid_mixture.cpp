@@ -8,10 +8,8 @@ namespace {
 
 constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is at the ground's edge
 
-/// Of what Darcy's law lets pass between the halves of a cell. Nodes do not see what one point has too much and its neighbour too little:
-/// it would grow by chance from step to step, until the pressure of the fuller one counts (docs/verification.md).
-constexpr double evening_share = 1.0;
-
+/// Nodes do not see what one point of a cell has too much and its neighbour too little: it would grow by chance from step to step, until the
+/// pressure of the fuller one counts (docs/verification.md). Points pass on to each other what Darcy's law lets pass between the halves of a cell.
 /// Of smooth fields, the nodes' means seen by points again differ from the points' own by this many squares of a cell times the Laplacian: twice half
 /// of the splines' second moment. As much of Darcy's flow does evening them out pass on already.
 constexpr double smoothing = 0.25;
@@ -265,8 +263,8 @@ GasAnswer GridMixture<has_gas>::answer_of_gas(size_t node, double dt) {
     answer.density = mass / mean.volume;
     answer.response = dt / mean.volume;
     answer.moved = mass / (1 + answer.drag);
-    const double spread = evening_share * answer.moved * dt / (cell_volume() * mean.volume);
-    answer.evened = smoothing * evening_share * answer.moved * dt / (mean.volume * mean.volume);
+    const double spread = answer.moved * dt / (cell_volume() * mean.volume);
+    answer.evened = smoothing * answer.moved * dt / (mean.volume * mean.volume);
     gas.evening[node] = {spread, spread * answer.push};
     return answer;
 }
@@ -288,10 +286,10 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     const double drag = drag_of(mean.lambda(mass));
     const double conductance = dt * liquid_content / (1 + drag);
     const double edge_conductance = dt * liquid_content / (1 + drag_of(mean.edge_lambda(mass)));
-    const double spread = evening_share * conductance * mean.volume / (cell_volume() * mass);
+    const double spread = conductance * mean.volume / (cell_volume() * mass);
     evening[node] = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
-    const double evened = evens ? smoothing * evening_share * conductance / mean.volume : 0.0;
+    const double evened = evens ? smoothing * conductance / mean.volume : 0.0;
     const double moved = liquid_mass / (1 + drag);
     double coupled = mass + moved * drag;
     [[maybe_unused]] GasAnswer answer;
