@@ -22,6 +22,16 @@ double dot(std::span<const double> a, std::span<const double> b) {
 
 double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
 
+/// A part of a step and what is left there of the work that it began with.
+struct Reached {
+    double length, left;
+};
+
+double between(const Reached& near, const Reached& far) {
+    const double share = far.left > 0 ? 0.5 : std::clamp(near.left / (near.left - far.left), 0.1, 0.7);
+    return near.length + share * (far.length - near.length);
+}
+
 }  // namespace
 
 /// Stresses of the present increment, and the unbalanced forces; returns their norm.
@@ -134,29 +144,38 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Compani
 }
 
 /// Goes along the direction, which is cut to the part gone, until the unbalanced force does hardly less work on it than at the start
-/// with the sign turned, or more: farther, the linear step would leave the path of the creeping ground. Returns the part gone; 0, and
-/// back at the start, where the direction is none that the unbalanced force drives.
+/// with the sign turned, or more: farther, the linear step would leave the path of the creeping ground. Where that lies beyond a kink
+/// (ground that comes into contact again resists up to 1e4 times as much as before), a cut that stops well before the kink does next to no
+/// work and leaves the next step the same kink. Returns the part gone; 0, and back at the start, where the direction is none that the
+/// unbalanced force drives.
 double Equilibrium::follow_direction(Companion* companion) {
     constexpr double most_overshoot = 0.5, most_growth = 1.1;
+    constexpr double most_left = 0.9;  // after a cut
     constexpr int32_t most_cuts = 6;
     const auto work = [&] { return dot(residual_, direction_) + (companion != nullptr ? companion->power() : 0.0); };
+    const auto go = [&](double length) {
+        increment_ = start_;
+        step_along(length);
+        return follow(companion, length);
+    };
     const double power = work();
     if (!(power > 0)) return 0;
     start_ = increment_;
+    Reached near{0, 1}, far{};
     double length = 1;
     for (int32_t k = 0;; ++k) {
-        increment_ = start_;
-        step_along(length);
-        const bool follows = follow(companion, length);
+        const bool follows = go(length);
         const double left = follows ? work() / power : -1.0;  // as beyond the balance: nearer
-        if (left >= -most_overshoot && left <= most_growth) break;
+        const bool is_on_path = left >= -most_overshoot && left <= most_growth;
+        if (is_on_path && (k == 0 || k == most_cuts || left <= most_left)) break;
         if (k == most_cuts) {
-            if (follows) break;
-            increment_ = start_;
-            follow(companion, 0);
-            return 0;
+            if (follows && near.length == 0) break;
+            length = near.length;
+            go(length);
+            break;
         }
-        length *= left > 0 ? 0.5 : std::clamp(1 / (1 - left), 0.1, 0.7);
+        (is_on_path ? near : far) = {length, left};
+        length = between(near, far);
     }
     for (double& d : direction_) d *= length;
     return length;
