@@ -79,9 +79,10 @@ bool Arrangement::hold(const FreePoints& points, const Grid& grid, int32_t subst
     for (size_t strip = 0; strip < strips_; ++strip) {
         for (size_t place = 0; place < regions_a_strip_; ++place) {
             bool holds = true;
-            for (size_t s = std::max(strip, size_t{1}) - 1; s < std::min(strip + 2, strips_); ++s)
+            for (size_t s = std::max(strip, size_t{1}) - 1; s < std::min(strip + 2, strips_); ++s) {
                 for (size_t r = std::max(place, size_t{1}) - 1; r < std::min(place + 2, regions_a_strip_); ++r)
                     holds = holds && is_quiet(s, r);
+            }
             Region& region = regions_[strip * regions_a_strip_ + place];
             holds = holds && region.points.first < region.points.last;
             changed = changed || holds != region.is_held;

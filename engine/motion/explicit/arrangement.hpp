@@ -14,6 +14,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -103,7 +104,7 @@ void Arrangement::for_each_held(const Handle& handle) const {
 template <class Value>
 void move_nodes(std::vector<Value>& values, const Grid& old, const Grid& grid) {
     const auto shift = [&](size_t axis) {
-        return static_cast<size_t>((old.corner[axis] - grid.corner[axis]) / grid.cell_size + 0.5);
+        return static_cast<size_t>(std::lround((old.corner[axis] - grid.corner[axis]) / grid.cell_size));
     };
     const auto columns = static_cast<size_t>(grid.cells[0]), old_columns = static_cast<size_t>(old.cells[0]);
     std::vector<Value> moved(grid.nodes());

@@ -114,7 +114,8 @@ struct GridMixture : WalledGrid {
     bool immersed = false;      ///< the edge stands in water without pressure: it may enter too
     double cell_volume() const { return grid.cell_size * grid.cell_size; }
     double height_of(size_t node) const {  ///< y, m
-        return grid.corner[1] + (static_cast<double>(node / static_cast<size_t>(grid.cells[0])) + 0.5) * grid.cell_size;
+        const size_t row = node / static_cast<size_t>(grid.cells[0]);
+        return grid.corner[1] + (static_cast<double>(row) + 0.5) * grid.cell_size;
     }
 
     std::vector<NodeMomentum> momentum;         ///< of the solid; more: sum of m div v

@@ -132,10 +132,11 @@ inline void gather_values(const Grid& grid, const std::vector<NodeVector>& field
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
         Pair sum = Pair::Zero();
-        for (size_t j = 0; j < 3; ++j)
+        for (size_t j = 0; j < 3; ++j) {
             sum += spline.value_y[j][k] *
                    (spline.value_x[0][k] * patch.node[j][0] + spline.value_x[1][k] * patch.node[j][1] +
                     spline.value_x[2][k] * patch.node[j][2]);
+        }
         value.x[k] = sum[0];
         value.y[k] = sum[1];
     }
@@ -148,10 +149,11 @@ inline void gather_pairs(const Grid& grid, const std::vector<NodePairOfVectors>&
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
         Quad sum = Quad::Zero();
-        for (size_t j = 0; j < 3; ++j)
+        for (size_t j = 0; j < 3; ++j) {
             sum += spline.value_y[j][k] *
                    (spline.value_x[0][k] * patch.node[j][0] + spline.value_x[1][k] * patch.node[j][1] +
                     spline.value_x[2][k] * patch.node[j][2]);
+        }
         liquid.x[k] = sum[0];
         liquid.y[k] = sum[1];
         gas.x[k] = sum[2];
@@ -183,9 +185,10 @@ inline void scatter_value(const Grid& grid, size_t count, const SplineBlock& spl
     NodePatch<Single, true> patch(field.data(), grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
-        for (size_t j = 0; j < 3; ++j)
+        for (size_t j = 0; j < 3; ++j) {
             for (size_t i = 0; i < 3; ++i)
                 patch.node[j][i][0] += spline.value_y[j][k] * value[k] * spline.value_x[i][k];
+        }
     }
 }
 
