@@ -24,11 +24,15 @@ SCENE = {
 }
 
 
+def throughput(threads):
+    """Rows of the program throughput."""
+    program = pathlib.Path(os.environ["TALUS_LIBRARY"]).resolve().parent.parent / "bin" / "throughput"
+    return json.loads(subprocess.run([program, str(threads)], check=True, capture_output=True, text=True).stdout)
+
+
 def loops():
     """Nanoseconds of a point and substep by composition, of the loops alone."""
-    program = pathlib.Path(os.environ["TALUS_LIBRARY"]).resolve().parent.parent / "bin" / "throughput"
-    rows = json.loads(subprocess.run([program, "1"], check=True, capture_output=True, text=True).stdout)
-    return {row["composition"]: 1e3 / row["million_point_updates_a_second"] for row in rows if row["cells_a_metre"] == CELLS}
+    return {row["composition"]: 1e3 / row["million_point_updates_a_second"] for row in throughput(1) if row["cells_a_metre"] == CELLS}
 
 
 def dry_engine():

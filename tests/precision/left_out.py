@@ -97,7 +97,7 @@ def motion_lines(cost):
     yield "\n## In motion\n"
     yield ("Explicit motion, 16,384 points that collapse (`tests/bench throughput`), one thread: each composition is a loop of its own. The last row is"
            " the same dry column as a scene of the whole engine, beside the loop of dry ground alone in the same substeps.\n")
-    known = {name: cost[key] for key, name in COMPOSITIONS.items() if key in cost}
+    known = {name: cost[key] for key, name in COMPOSITIONS.items()}
     full = list(known)[-1]
     lines = [[name, f"{value:.1f}", f"{value / known[full]:.2f}"] for name, value in known.items()]
     yield from table(["composition", "ns a point and substep", f"of {full}"], lines)

@@ -2,7 +2,7 @@
 
 import math
 
-from scenes import WATER_WEIGHT, earth, held_ground, rain_zone, section
+from scenes import WATER_WEIGHT, dry, earth, held_ground, rain_zone, section
 
 GRAVITY = 9.81
 SATURATED_DENSITY = 2000.0  # of earth(): 1600 and 40 % of water
@@ -27,8 +27,7 @@ def smooth_block(soil, traction, width=0.5, height=1.0):
 
 def dry_block(soil, traction):
     """Without weight."""
-    bare = {name: value for name, value in soil.items() if name != "hydraulics"}
-    return {**smooth_block(bare, traction), "physics": {"water": False}, "gravity": 0, "initial": {"stress": "zero"}}
+    return {**smooth_block(dry(soil), traction), "physics": {"water": False}, "gravity": 0, "initial": {"stress": "zero"}}
 
 
 def wetted_block(factor, seconds, cohesion=2e4, friction=30):

@@ -1,7 +1,7 @@
 """Ground that moves by its momentum: stiff phases, fast and slow water, flight, impact, fragments and long run-outs."""
 
 from case import Case, Sweep
-from scenes import earth, rain_zone, section
+from scenes import dry, earth, rain_zone, section
 
 SLIDE = [["step", 0.1, 10]]
 
@@ -16,10 +16,6 @@ def dynamic(ground, soils, walls, cell_size, water=None, rain=0.0, table=1.0):
         return {**scene, "initial": {"stress": "elastic" if walls else "zero"}}
     return {**scene, "water": {"bulkModulus": water}, "surface": rain_zone(rain),
             "initial": {"flow": "hydrostatic", "waterTable": table, "stress": "elastic"}}
-
-
-def dry(soil):
-    return {name: value for name, value in soil.items() if name != "hydraulics"}
 
 
 def bank(scale=1.0, right=8.0):

@@ -26,6 +26,10 @@ def earth(name="earth", cohesion=1e4, friction=30, dilation=0, tensile=None, poi
     return {**soil(name, alpha, **hydraulics), "dryDensity": 1600, "solid": solid}
 
 
+def dry(soil):
+    return {name: value for name, value in soil.items() if name != "hydraulics"}
+
+
 def rain_zone(rate, ponding=0.0):
     return {"pondingDepth": ponding, "zones": [{"name": "rain", "time": [0], "rate": [rate]}]}
 

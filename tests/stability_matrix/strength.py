@@ -5,7 +5,7 @@ import numpy
 ATMOSPHERE = 101325.0  # Pa
 LARGEST_FRICTION = 60.0  # degrees, of the exponential model
 STATES = 1001  # of a soil that softens
-LEAST = 1e-3  # Pa: rounding of stiff ground that bears nothing
+LEAST = 1e-3  # Pa, in motion: rounding of stiff ground that bears nothing
 FLOOR = 1e-3  # of the ground's greatest strength: what a point's excess is at least compared with
 
 GAUSS = 1 / numpy.sqrt(3)
@@ -54,9 +54,9 @@ def excess(stress, cohesion, friction, tensile):
     return numpy.maximum(shear, largest - tensile), scale
 
 
-def relative_excess(beyond, scale):
-    """The largest over the ground, 0 where none is beyond."""
-    floor = max(FLOOR * scale.max(), LEAST)
+def relative_excess(beyond, scale, least=1e-300):
+    """The largest over the ground, 0 where none is beyond; a strength counts at least `least`, Pa."""
+    floor = max(FLOOR * scale.max(), least)
     return float(numpy.max(numpy.maximum(beyond, 0) / numpy.maximum(scale, floor)))
 
 
@@ -85,7 +85,8 @@ class YieldCheck:
     def __call__(self):
         stress = self._skeleton_stress()
         parts = [self._excess_of(number, stress) for number in self.plastic if (self.soils == number).any()]
-        return relative_excess(*map(numpy.concatenate, zip(*parts))) if parts else 0.0
+        least = LEAST if "point_soil" in self.engine.fields else 1e-300
+        return relative_excess(*map(numpy.concatenate, zip(*parts)), least) if parts else 0.0
 
     def _excess_of(self, number, stress):
         at = self.soils == number

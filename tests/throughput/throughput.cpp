@@ -2,6 +2,7 @@
 // Prints a JSON array of rows. Usage: throughput THREADS
 #include "motion/explicit/explicit_mixture.hpp"
 #include "motion/explicit/explicit_motion.hpp"
+#include "verification/explicit_cases.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -18,14 +19,6 @@ constexpr double scene_step = 0.018;  // s, in cells of a metre: a little less t
 constexpr int64_t steps = 300;
 const Elasticity elastic = elasticity(1e6, 0.3);
 const Walls box{{WallKind::roller, 0, 0}, {WallKind::roller, 4, 0}, {WallKind::fixed, 0, 0}};
-
-Hydraulics loam() {
-    Hydraulics soil;
-    soil.retention.alpha = 4e-5;
-    soil.retention.n = 1.2;
-    soil.conductivity.along = soil.conductivity.across = 1e-4;
-    return soil;
-}
 
 FreePoints column(int32_t cells, size_t fields) {
     FreePoints points;
@@ -89,9 +82,9 @@ void run(int32_t cells, int32_t threads, bool last) {
     time(
         "three_phase", cells, threads, last,
         [&] {
-            return ExplicitMixture<Filling::three_phase>(size, box, 9.81, {yielding},
-                                                         {{grain_density, 1e-8, 0, false, 1e-6}}, {{loam(), 1e6}},
-                                                         {1000, 1e6}, column(cells, point_fields), threads);
+            return ExplicitMixture<Filling::three_phase>(
+                size, box, 9.81, {yielding}, {{grain_density, 1e-8, 0, false, 1e-6}},
+                {{test::van_genuchten(4e-5, 1.2), 1e6}}, {1000, 1e6}, column(cells, point_fields), threads);
         },
         step / 10);
 }

@@ -14,13 +14,7 @@ namespace {
 
 constexpr double gravity = 9.81, porosity = 0.4, grain_density = block_density / (1 - porosity);
 
-Hydraulics loam() {
-    Hydraulics soil;
-    soil.retention.alpha = 4e-5;
-    soil.retention.n = 1.2;
-    soil.conductivity.along = soil.conductivity.across = 1e-4;
-    return soil;
-}
+Hydraulics loam() { return van_genuchten(4e-5, 1.2); }
 
 const ExplicitGas air{};
 const ExplicitHydraulics moist{grain_density, 1e-4 / (1000 * gravity), 0, false, 1e-4 / (18 * gravity)};
@@ -76,15 +70,9 @@ TEST_CASE("the saturation table is the inverse of the hydraulic table") {
 }
 
 TEST_CASE("where a soil would hold its water more stiffly than water is, the saturation table is as soft as water") {
-    const auto soil = [](double alpha, double n) {
-        Hydraulics hydraulics = loam();
-        hydraulics.retention.alpha = alpha;
-        hydraulics.retention.n = n;
-        return hydraulics;
-    };
     for (const double bulk_modulus : {1e7, 2e9}) {
-        for (const SaturationTable& table :
-             {SaturationTable(soil(1e-6, 6), bulk_modulus), SaturationTable(soil(1e-6, 12), bulk_modulus)}) {
+        for (const SaturationTable& table : {SaturationTable(van_genuchten(1e-6, 6), bulk_modulus),
+                                             SaturationTable(van_genuchten(1e-6, 12), bulk_modulus)}) {
             for (const double saturation : {0.999, 0.99999, 1 - 1e-9}) {
                 CHECK(table.stiffness(saturation) <= bulk_modulus);
                 const double step = 1e-3 * (1 - saturation);
@@ -93,7 +81,8 @@ TEST_CASE("where a soil would hold its water more stiffly than water is, the sat
             }
         }
     }
-    CHECK(SaturationTable(soil(1e-7, 1.03), 1e6).stiffness(0.9999) > 1e8);  // where none of the curve is as soft
+    CHECK(SaturationTable(van_genuchten(1e-7, 1.03), 1e6).stiffness(0.9999) >
+          1e8);  // where none of the curve is as soft
 }
 
 TEST_CASE("a soil that does not yield bears what its weak neighbour does not") {

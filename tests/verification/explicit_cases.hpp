@@ -1,6 +1,7 @@
 // Explicit motion of blocks of material points on the Cartesian background.
 #pragma once
 
+#include "materials/hydraulic/saturation_table.hpp"
 #include "motion/explicit/explicit_motion.hpp"
 
 #include <algorithm>
@@ -11,6 +12,15 @@
 namespace talus::test {
 
 inline constexpr double block_density = 2000;  // kg/m3
+
+/// A soil that conducts 1e-4 m/s; alpha in 1/Pa.
+inline Hydraulics van_genuchten(double alpha, double n) {
+    Hydraulics soil;
+    soil.retention.alpha = alpha;
+    soil.retention.n = n;
+    soil.conductivity.along = soil.conductivity.across = 1e-4;
+    return soil;
+}
 
 /// A rectangle of points at rest, two a cell and direction, with its lower left corner at (x, y).
 inline FreePoints block_of_points(double cell_size, double x, double y, size_t columns, size_t rows,

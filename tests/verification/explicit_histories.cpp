@@ -135,14 +135,6 @@ void standing_wave(size_t cells, double solid, double liquid, double mobility, d
     print("amplitude", amplitude, "}");
 }
 
-Hydraulics van_genuchten(double alpha, double n) {
-    Hydraulics soil;
-    soil.retention.alpha = alpha;
-    soil.retention.n = n;
-    soil.conductivity.along = soil.conductivity.across = 1e-4;
-    return soil;
-}
-
 /// Masses of the air in a column whose gas has one pressure, Pa.
 void fill_with_air(const Ground& ground, const ExplicitGas& air, double pressure, FreePoints& points) {
     for (size_t p = 0; p < points.count; ++p)
@@ -238,17 +230,22 @@ void gas_wave(size_t cells, const std::array<double, 3>& motion, double alpha, d
     print("gas", amplitude[2], "}");
 }
 
+/// The stress of the paper's soil and its water at the start.
+void load_with_weight(const Ground& ground, double gravity, FreePoints& points) {
+    for (size_t p = 0; p < points.count; ++p) {
+        const double depth = ground.height - points[position_y][p];
+        points[stress_yy][p] = -(1800 + 340) * gravity * depth;
+        points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
+    }
+}
+
 /// The paper's column: profiles of pressure and saturation, means over cells, at its five times. As in the reference, the column is next to
 /// rigid and the last of them is when its last pore is filled: later by the water that it and its pores are compressed by.
 void column_explicit(size_t cells) {
     const double conductivity = 1e-4, gravity = 9.81;
     const Ground ground{1, 0.4, 3000, elasticity(2e8, 0.3), conductivity / (water_density * gravity), 1e8, 0.85};
     FreePoints points = column_of_points(ground, cells);
-    for (size_t p = 0; p < points.count; ++p) {
-        const double depth = ground.height - points[position_y][p];
-        points[stress_yy][p] = -(1800 + 340) * gravity * depth;
-        points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
-    }
+    load_with_weight(ground, gravity, points);
     auto column = column_of<Filling::unsaturated>(ground, cells, gravity, std::move(points),
                                                   {{van_genuchten(4e-5, 1.2), ground.bulk_modulus}});
     column.set_rain([](double) { return 1e-4; });
@@ -256,10 +253,7 @@ void column_explicit(size_t cells) {
     double now = 0, initial = 0;
     for (size_t p = 0; p < column.points().count; ++p) initial += column.points()[water_mass][p];
     for (const double time : {20.0, 80.0, 160.0, 320.0, 600.5}) {
-        const auto steps = static_cast<int64_t>(std::ceil((time - now) / column.critical_step()));
-        const double dt = (time - now) / static_cast<double>(steps);
-        for (int64_t i = 1; i <= steps; ++i)
-            if (!column.step(dt, i == steps)) std::exit(1);  // it came to no number
+        const int64_t steps = advance(column, time - now);
         now = time;
         const std::vector<size_t> order = upwards(column);
         std::vector<double> height, pressure, saturation;
@@ -289,11 +283,7 @@ void column_three_phase(size_t cells) {
     const ExplicitGas air{101325 * 0.02896 / (8.314 * 293.15), 101325};
     FreePoints points = column_of_points(ground, cells, point_fields);
     fill_with_air(ground, air, 0, points);
-    for (size_t p = 0; p < points.count; ++p) {
-        const double depth = ground.height - points[position_y][p];
-        points[stress_yy][p] = -(1800 + 340) * gravity * depth;
-        points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
-    }
+    load_with_weight(ground, gravity, points);
     auto column = column_with_gas(ground, cells, gravity, mobility * 1e-3 / 1.8e-5, false, std::move(points),
                                   van_genuchten(4e-5, 1.2), air);
     column.set_rain([](double) { return 1e-4; });

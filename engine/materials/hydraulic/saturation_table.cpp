@@ -65,9 +65,7 @@ SaturationTable::SaturationTable(const Hydraulics& hydraulics, double bulk_modul
 }
 
 double SaturationTable::stiffness(double saturation) const {
-    const double range = maximum_ - residual_, effective = this->effective(saturation);
-    if (effective >= chord_effective_) return -chord_pressure_ / (range * (1 - chord_effective_));
-    const double held = std::max(effective, saturation_rows::least);
+    const double held = std::clamp(effective(saturation), saturation_rows::least, chord_effective_);
     return -suction_slope(held, std::log(odds(held)));
 }
 

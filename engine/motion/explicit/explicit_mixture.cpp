@@ -575,7 +575,7 @@ void ExplicitMixture<filling>::find_wave_speed() {
 template <Filling filling>
 double ExplicitMixture<filling>::critical_step() const {
     constexpr double share = 1.0;  // stable to 1.4: the bound of the speed is above any wave's
-    return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.largest_speed());
+    return share * nodes_.grid.cell_size / (wave_speed_ + nodes_.start_speed);
 }
 
 template <Filling filling>

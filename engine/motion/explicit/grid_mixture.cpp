@@ -106,7 +106,8 @@ void GridMixture<has_gas>::begin_step() {
             gas.weight[nodes.inside] += gas.weight[nodes.beyond];  // what is left beyond nobody reads
         }
     });
-    for_each_node([this](size_t i) {
+    SpeedBound bound(least_mass);
+    for_each_node([this, &bound](size_t i) {
         const NodeMomentum &solid = momentum[i], &liquid = liquid_momentum[i];
         if (!(solid.mass > 0)) {  // the last point has left: what came to its node has left with the surface
             seepage += flow_time * returned[i];
@@ -114,6 +115,7 @@ void GridMixture<has_gas>::begin_step() {
         }
         const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
         velocity[i] = {solid.x * inverse, solid.y * inverse};
+        bound.add(solid.mass, velocity[i]);
         liquid_velocity[i] = velocity[i];
         if (liquid.mass > 0) liquid_velocity[i] = {liquid.x / liquid.mass, liquid.y / liquid.mass};
         rates[i] = {solid.more * inverse, (liquid.more + returned[i]) * inverse};
@@ -129,6 +131,7 @@ void GridMixture<has_gas>::begin_step() {
             if (!loses && !(gas.weight[i] > 0)) gas.escaped += flow_time * gain;
         }
     });
+    start_speed = bound.value();
     mirror();
     if constexpr (has_gas) for_each_node([this](size_t i) { gas.both_rates[i] = {rates[i], gas.rates[i]}; });
 }
@@ -148,8 +151,9 @@ void GridMixture<has_gas>::end_step(double dt) {
         });
     }
     flow_time = dt;
-    speed = largest_speed();
-    for_each_node([this](size_t i) {
+    SpeedBound bound(least_mass);
+    for_each_node([this, &bound](size_t i) {
+        bound.add(momentum[i].mass, velocity[i]);
         momentum[i] = {};
         liquid_momentum[i] = {};
         if constexpr (has_gas) {
@@ -157,6 +161,7 @@ void GridMixture<has_gas>::end_step(double dt) {
             gas.weight[i] = 0;
         }
     });
+    speed = bound.value();
 }
 
 template <bool has_gas>

@@ -109,7 +109,8 @@ struct GridMixture : WalledGrid {
     double liquid_density = 0;  ///< kg/m3
     double edge_pressure = 0;   ///< on the ground's edge, Pa
     double least_mass = 0;      ///< kg, of a point's solid
-    double speed = 0;           ///< m/s, the solid's speed_bound() at the end of the step
+    double speed = 0;           ///< m/s, a bound of the points' solid in the step, from its end
+    double start_speed = 0;     ///< likewise, from its start
     bool evens = false;         ///< points of a cell even out what they hold
     bool immersed = false;      ///< the edge stands in water without pressure: it may enter too
     double cell_volume() const { return grid.cell_size * grid.cell_size; }
@@ -142,7 +143,6 @@ struct GridMixture : WalledGrid {
     void begin_step();
     void end_step(double dt);
     [[nodiscard]] double total(const std::vector<double>& values) const;  ///< over the nodes
-    [[nodiscard]] double largest_speed() const { return speed_bound(*this, momentum, velocity, least_mass); }
 
 private:
     [[nodiscard]] bool is_at_edge(size_t node) const;

@@ -78,11 +78,4 @@ void GridMotion::meet(const Wall& wall, size_t axis, double outwards, NodePair n
     in.*along = out.*along = sliding;
 }
 
-double speed_bound(const WalledGrid& grid, const std::vector<NodeMomentum>& momentum,
-                   const std::vector<NodeVector>& velocity, double least_mass) {
-    SpeedBound bound(least_mass);
-    grid.for_each_node([&](size_t i) { bound.add(momentum[i].mass, velocity[i]); });
-    return bound.value();
-}
-
 }  // namespace talus

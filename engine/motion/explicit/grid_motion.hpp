@@ -66,9 +66,6 @@ private:
     double per_mass_, largest_ = 0, sum_ = 0;  // the largest of numbers and NaN may be a number, their sum is none
 };
 
-double speed_bound(const WalledGrid& grid, const std::vector<NodeMomentum>& momentum,
-                   const std::vector<NodeVector>& velocity, double least_mass);
-
 struct GridMotion : WalledGrid {
     double gravity = 0;                  ///< m/s2, downwards
     double least_mass = 0;               ///< kg, of a point
