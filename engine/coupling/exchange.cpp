@@ -12,13 +12,15 @@ namespace {
 
 constexpr int most_iterations = 40;
 // Of ground that yields, beyond which flow and skeleton are solved for together.
-constexpr int most_plain_iterations = 8;
+constexpr int most_plain_iterations = 15;
 // Disagreement of the first iteration at which the next exchange is as long as this one.
 constexpr double well_expected = 100.0;
 
-// How much longer the next exchange may be: the expectation is linear in time, its error quadratic in the exchange's length.
-double growth(double first_disagreement) {
-    return std::clamp(0.9 * std::sqrt(well_expected / std::max(first_disagreement, 1e-12)), 0.2, 4.0);
+// How much longer the next exchange may be: the expectation is linear in time, its error quadratic in the exchange's length. No longer
+// where a longer one has just been given up.
+double growth(double first_disagreement, bool was_cut) {
+    const double most = was_cut ? 1.0 : 4.0;
+    return std::clamp(0.9 * std::sqrt(well_expected / std::max(first_disagreement, 1e-12)), 0.2, most);
 }
 
 }  // namespace
@@ -52,8 +54,10 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
         if (is_found && disagreement_ <= 1.0) break;
         // Under pressures that are not those of the two, ground that yields may find no equilibrium, or one that is farther off.
         const bool yields = outcome_.yielding > 0;
+        if (!is_found && !is_short && !state_.settles_jointly) return end_without(outcome_);
         if (!is_found || (yields && (disagreement_ > first_disagreement || iteration == most_plain_iterations))) {
-            const Exchange result = settle_jointly(duration, path, cancelled);
+            const Exchange result = settle_jointly(duration, path, is_short, cancelled);
+            if (result == Exchange::agreed || is_short) state_.settles_jointly = result == Exchange::agreed;
             if (result != Exchange::agreed) return result;
             first_disagreement = forecast_error_;
             break;
@@ -65,7 +69,8 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     accept(duration, path.flow);
     state_.watch = path.watch;
     happenings.insert(happenings.end(), path.noticed.begin(), path.noticed.end());
-    if (flow_ && moves) state_.exchange_step = duration * std::max(growth(first_disagreement), least_growth);
+    if (flow_ && moves)
+        state_.exchange_step = duration * std::max(growth(first_disagreement, state_.exchange_was_cut), least_growth);
     return Exchange::agreed;
 }
 

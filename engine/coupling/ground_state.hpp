@@ -40,6 +40,8 @@ struct GroundState {
     std::vector<double> pore_volume_rate;  ///< per portion, m3/s, over the last exchange: the next one's prediction
     std::vector<double> pore_stress_rate;  ///< per portion, Pa/s, likewise
     double exchange_step = 0;              ///< s, what the next exchange between flow and motion would take; 0: unknown
+    bool exchange_was_cut = false;         ///< a longer one was given up last
+    bool settles_jointly = false;          ///< flow and skeleton, where the skeleton alone found no equilibrium last
     bool equilibrium_lost = false;         ///< the skeleton stands as it was when it failed
     bool rests = false;                    ///< it failed, moved and came to rest
     FlowWatch watch;

@@ -185,18 +185,35 @@ void Simulation::Water::answer_pressures(std::span<const double> change) {
     }
 }
 
-Simulation::Exchange Simulation::settle_jointly(double duration, FlowPath& path, const Cancelled& cancelled) {
-    constexpr int32_t most_creep_steps = 200;
+// It is dear where the exchange is long: first a shorter one is tried, in which the skeleton alone may find its equilibrium, and where it did
+// not, the two found theirs.
+Simulation::Exchange Simulation::settle_jointly(double duration, FlowPath& path, bool is_short,
+                                                const Cancelled& cancelled) {
+    constexpr int32_t most_steps = 200;
+    constexpr int32_t few_steps = 30;  // few that find a balance take more
+    const EquilibriumOutcome alone = outcome_;
+    const bool is_lost_alone = alone.status == EquilibriumStatus::no_equilibrium;
     const double flow_before = counts.seconds_flow;
     {
         const Stopwatch stopwatch(counts.seconds_motion);
         Water water(*this, duration, path, cancelled);
-        outcome_ = equilibrium_->solve_with(water, most_creep_steps);
+        outcome_ = equilibrium_->solve_with(water, is_short && !is_lost_alone ? most_steps : few_steps);
         if (water.is_cancelled()) return Exchange::cancelled;
     }
     counts.seconds_motion -= counts.seconds_flow - flow_before;
     counts.motion_iterations += outcome_.iterations;
-    return outcome_.status == EquilibriumStatus::converged ? Exchange::agreed : end_without(outcome_);
+    if (outcome_.status == EquilibriumStatus::not_converged && disagreement_ <= 1.0) settle_beside(path.flow, duration);
+    if (outcome_.status == EquilibriumStatus::converged) return Exchange::agreed;
+    if (outcome_.status == EquilibriumStatus::not_converged && is_lost_alone) outcome_ = alone;
+    return end_without(outcome_);
+}
+
+// The skeleton beside water that has come to agree with it: what unbalanced force is left may be less than the flow's own error.
+void Simulation::settle_beside(const FlowState& flow, double duration) {
+    outcome_ = find_equilibrium(flow, state_.time + duration);
+    if (outcome_.status != EquilibriumStatus::converged) return;
+    compare_pore_volumes(flow);
+    if (disagreement_ > 1.0) outcome_.status = EquilibriumStatus::not_converged;
 }
 
 }  // namespace talus

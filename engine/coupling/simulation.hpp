@@ -124,7 +124,8 @@ private:
     void correct_expectation();
     // the two together (joint.cpp)
     class Water;
-    Exchange settle_jointly(double duration, FlowPath& path, const Cancelled& cancelled);
+    Exchange settle_jointly(double duration, FlowPath& path, bool is_short, const Cancelled& cancelled);
+    void settle_beside(const FlowState& flow, double duration);
     [[nodiscard]] Loads loads() const {
         return {point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_};
     }

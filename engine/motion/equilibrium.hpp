@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -114,7 +115,7 @@ private:
     void predict(double wanted, EquilibriumOutcome& outcome);
     bool accelerate(EquilibriumOutcome& outcome);
     bool creep(int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion = nullptr);
-    double follow_direction(Companion* companion);
+    std::optional<double> follow_direction(Companion* companion);
     void guide(Companion& companion);
     bool follow(Companion* companion, double length);
     void find_mechanism(CollapseEvidence& evidence);

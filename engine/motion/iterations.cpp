@@ -115,14 +115,15 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Compani
     std::fill(last_direction_.begin(), last_direction_.end(), 0.0);
     for (int32_t k = 0; k < most_steps && viscosity < largest_viscosity; ++k) {
         if (relative_residual() <= wanted_ && agrees()) return true;
-        double length = 0;
+        std::optional<double> length = 0.0;
         if (factorise_tangent(viscosity, outcome)) {
             solve_for_direction(tangent_, outcome);
             ++outcome.pseudo_steps;
             if (companion != nullptr) guide(*companion);
             length = follow_direction(companion);
         }
-        if (length == 0) {
+        if (!length) return false;
+        if (*length == 0) {
             viscosity *= 4;
             continue;
         }
@@ -130,7 +131,7 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Compani
         if (!gains && relative_residual() <= tolerance && agrees()) return true;
         const double ratio = std::clamp(norm(residual_) / unbalanced, smallest_ratio, 1.0);
         unbalanced = norm(residual_);
-        viscosity *= length < 1 ? 2 : steady_ratio * ratio;
+        viscosity *= *length < 1 ? 2 : steady_ratio * ratio;
         const bool is_proved = watch(collapse, last_direction_) && agrees();
         outcome.collapse = collapse.evidence();
         if (is_proved) {
@@ -147,11 +148,12 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Compani
 /// with the sign turned, or more: farther, the linear step would leave the path of the creeping ground. Where that lies beyond a kink
 /// (ground that comes into contact again resists up to 1e4 times as much as before), a cut that stops well before the kink does next to no
 /// work and leaves the next step the same kink. Returns the part gone; 0, and back at the start, where the direction is none that the
-/// unbalanced force drives.
-double Equilibrium::follow_direction(Companion* companion) {
+/// unbalanced force drives; nothing where the companion's answer is rougher than what is left to be gained.
+std::optional<double> Equilibrium::follow_direction(Companion* companion) {
     constexpr double most_overshoot = 0.5, most_growth = 1.1;
     constexpr double most_left = 0.9;  // after a cut
     constexpr int32_t most_cuts = 6;
+    constexpr double next_to_none = 0.01, smooth = 0.5;
     const auto work = [&] { return dot(residual_, direction_) + (companion != nullptr ? companion->power() : 0.0); };
     const auto go = [&](double length) {
         increment_ = start_;
@@ -159,7 +161,7 @@ double Equilibrium::follow_direction(Companion* companion) {
         return follow(companion, length);
     };
     const double power = work();
-    if (!(power > 0)) return 0;
+    if (!(power > 0)) return 0.0;
     start_ = increment_;
     Reached near{0, 1}, far{};
     double length = 1;
@@ -169,6 +171,7 @@ double Equilibrium::follow_direction(Companion* companion) {
         const bool is_on_path = left >= -most_overshoot && left <= most_growth;
         if (is_on_path && (k == 0 || k == most_cuts || left <= most_left)) break;
         if (k == most_cuts) {
+            if (companion != nullptr && follows && length < next_to_none && std::abs(left - 1) > smooth) return {};
             if (follows && near.length == 0) break;
             length = near.length;
             go(length);
