@@ -113,6 +113,7 @@ void FlowSystem::evaluate(double t, std::span<const double> pressure, std::span<
         evaluate_deforming(t, pressure);
     }
     evaluate_links(pressure, beyond);
+    evaluate_common_permeability();
     evaluate_crossings();
     evaluate_surface(pressure, beyond);
     evaluate_flux(t);
@@ -186,6 +187,24 @@ void FlowSystem::evaluate_links(std::span<const double> pressure, std::span<cons
     }
 }
 
+// The mean of a link's own flow has a jump where its ends come to hydrostatic balance, full below and dry above: there the flow is none, and
+// what it is divided by too. Other water must not meet that jump, nor leave a dry end as if it were wet.
+void FlowSystem::evaluate_common_permeability() {
+    if (network.crossings.empty()) return;
+    for (size_t l = 0; l < network.links.size(); ++l) {
+        const HydraulicState& a = state_[static_cast<size_t>(network.links[l].portion_a)];
+        const HydraulicState& b = state_[static_cast<size_t>(network.links[l].portion_b)];
+        const double mean = std::sqrt(a.permeability * b.permeability);
+        LinkState& link = link_state_[l];
+        link.common_permeability = mean;
+        link.common_slope = {};
+        if (mean > 0) {
+            link.common_slope = {0.5 * mean * a.permeability_slope / a.permeability,
+                                 0.5 * mean * b.permeability_slope / b.permeability};
+        }
+    }
+}
+
 // Along each of two links flows C sqrt(k_a k_b) times the head lost along the other.
 void FlowSystem::evaluate_crossings() {
     for (size_t c = 0; c < network.crossings.size(); ++c) {
@@ -194,7 +213,7 @@ void FlowSystem::evaluate_crossings() {
         const LinkState& link_a = link_state_[a];
         const LinkState& link_b = link_state_[b];
         const double conductance =
-            network.cross_transmissibility[c] * std::sqrt(link_a.permeability * link_b.permeability);
+            network.cross_transmissibility[c] * std::sqrt(link_a.common_permeability * link_b.common_permeability);
         add_flow(network.links[a], conductance * link_b.head);
         add_flow(network.links[b], conductance * link_a.head);
     }
@@ -291,16 +310,16 @@ void FlowSystem::assemble_crossings(double step, SparseMatrix& matrix) const {
         const auto b = static_cast<size_t>(network.crossings[c].link_b);
         const LinkState& link_a = link_state_[a];
         const LinkState& link_b = link_state_[b];
-        const double mean = std::sqrt(link_a.permeability * link_b.permeability);
+        const double mean = std::sqrt(link_a.common_permeability * link_b.common_permeability);
         if (mean == 0) continue;
         const double conductance = step * network.cross_transmissibility[c] * mean;
-        const double steepness_a = 0.5 * conductance / link_a.permeability;
-        const double steepness_b = 0.5 * conductance / link_b.permeability;
+        const double steepness_a = 0.5 * conductance / link_a.common_permeability;
+        const double steepness_b = 0.5 * conductance / link_b.common_permeability;
         const auto own = [](double conductance_here, double steepness, const std::array<double, 2>& slope) {
             return std::array{conductance_here + steepness * slope[0], steepness * slope[1] - conductance_here};
         };
-        const auto& slope_a = link_a.permeability_slope;
-        const auto& slope_b = link_b.permeability_slope;
+        const auto& slope_a = link_a.common_slope;
+        const auto& slope_b = link_b.common_slope;
         add_exchange(network.links[a], link_places_[a], own(0.0, steepness_a * link_b.head, slope_a), matrix);
         add_exchange(network.links[b], link_places_[b], own(0.0, steepness_b * link_a.head, slope_b), matrix);
         add_exchange(network.links[a], cross_places_[2 * c], own(conductance, steepness_b * link_b.head, slope_b),

@@ -98,6 +98,7 @@ private:
     void evaluate_rigid(std::span<const double> pressure);
     void evaluate_deforming(double t, std::span<const double> pressure);
     void evaluate_links(std::span<const double> pressure, std::span<const double> beyond);
+    void evaluate_common_permeability();
     void evaluate_crossings();
     void add_flow(const Link& link, double flow);
     void evaluate_surface(std::span<const double> pressure, std::span<const double> beyond);
@@ -122,6 +123,8 @@ private:
         double head;          ///< lost from a to b, Pa
         double permeability;  ///< mean k_r, -
         std::array<double, 2> permeability_slope;
+        double common_permeability;  ///< geometric mean of the ends' k_r, -: what crosses the link meets
+        std::array<double, 2> common_slope;
     };
     std::vector<LinkState> link_state_;
     std::vector<double> pore_stress_, pore_stress_slope_;                    // per portion, deforming only
