@@ -187,20 +187,22 @@ void FlowSystem::evaluate_links(std::span<const double> pressure, std::span<cons
     }
 }
 
-// The mean of a link's own flow has a jump where its ends come to hydrostatic balance, full below and dry above: there the flow is none, and
-// what it is divided by too. Other water must not meet that jump, nor leave a dry end as if it were wet.
+// The mean of a link's own flow all but jumps where its ends come to hydrostatic balance, full below and dry above: no flow is there divided by
+// no head. Other water must not meet that, nor leave a dry end as if it were wet.
 void FlowSystem::evaluate_common_permeability() {
     if (network.crossings.empty()) return;
     for (size_t l = 0; l < network.links.size(); ++l) {
         const HydraulicState& a = state_[static_cast<size_t>(network.links[l].portion_a)];
         const HydraulicState& b = state_[static_cast<size_t>(network.links[l].portion_b)];
-        const double mean = std::sqrt(a.permeability * b.permeability);
         LinkState& link = link_state_[l];
-        link.common_permeability = mean;
-        link.common_slope = {};
-        if (mean > 0) {
-            link.common_slope = {0.5 * mean * a.permeability_slope / a.permeability,
-                                 0.5 * mean * b.permeability_slope / b.permeability};
+        const double of_ends = std::sqrt(a.permeability * b.permeability);
+        if (of_ends > 0 && of_ends < link.permeability) {
+            link.common_permeability = of_ends;
+            link.common_slope = {0.5 * of_ends * a.permeability_slope / a.permeability,
+                                 0.5 * of_ends * b.permeability_slope / b.permeability};
+        } else {
+            link.common_permeability = of_ends > 0 ? link.permeability : 0.0;
+            link.common_slope = link.permeability_slope;
         }
     }
 }

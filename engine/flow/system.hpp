@@ -123,7 +123,8 @@ private:
         double head;          ///< lost from a to b, Pa
         double permeability;  ///< mean k_r, -
         std::array<double, 2> permeability_slope;
-        double common_permeability;  ///< geometric mean of the ends' k_r, -: what crosses the link meets
+        double
+            common_permeability;  ///< of the mean and the geometric mean of the ends' k_r the lesser: what crosses meets it
         std::array<double, 2> common_slope;
     };
     std::vector<LinkState> link_state_;
