@@ -190,7 +190,7 @@ void fill_with_water(const Scene& scene, const Mesh& mesh, const Locator& locato
 
 /// Gas at the atmosphere's pressure in what the water leaves of the pores.
 void fill_with_gas(const Scene& scene, FreePoints& points) {
-    for (size_t f = wet_fields; f < point_fields; ++f) points.field[f].assign(points.count, 0.0);
+    for (size_t f = wet_fields; f < gas_fields; ++f) points.field[f].assign(points.count, 0.0);
     for (size_t p = 0; p < points.count; ++p) {
         const Soil& soil = scene.soils[static_cast<size_t>(points.soil[p])];
         const double grains = points[solid_mass][p] * (1 - soil.porosity) / soil.dry_density;

@@ -84,7 +84,7 @@ void run(int32_t cells, int32_t threads, bool last) {
         [&] {
             return ExplicitMixture<Filling::three_phase>(
                 size, box, 9.81, {yielding}, {{grain_density, 1e-8, 0, false, 1e-6}},
-                {{test::van_genuchten(4e-5, 1.2), 1e6}}, {1000, 1e6}, column(cells, point_fields), threads);
+                {{test::van_genuchten(4e-5, 1.2), 1e6}}, {1000, 1e6}, column(cells, gas_fields), threads);
         },
         step / 10);
 }
