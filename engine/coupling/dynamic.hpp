@@ -26,7 +26,7 @@ using RainAt = std::function<double(double x)>;
 struct WaterExchange {
     double rain = 0;
     double run_off = 0;
-    double seepage = 0;
+    double seepage = 0;  ///< what evaporated included
 };
 
 /// What a ground of a mesh hands over to its material points.
@@ -60,11 +60,18 @@ public:
     [[nodiscard]] const FreePoints& points() const;
     [[nodiscard]] double cell_size() const;
     [[nodiscard]] bool has_water() const { return !std::holds_alternative<ExplicitMotion>(motion_); }
-    [[nodiscard]] bool has_gas() const { return std::holds_alternative<ThreePhases>(motion_); }  ///< that moves
+    [[nodiscard]] bool has_gas() const {
+        return std::holds_alternative<ThreePhases>(motion_) || has_exchange();
+    }  ///< that moves
+    [[nodiscard]] bool has_exchange() const {
+        return std::holds_alternative<Exchange>(motion_);
+    }  ///< between the fluids
     // Of a point, where there is water; Pa, -.
     [[nodiscard]] double pressure(size_t point) const;
     [[nodiscard]] double gas_pressure(size_t point) const;  ///< 0: at rest
     [[nodiscard]] double saturation(size_t point) const;
+    [[nodiscard]] double relative_humidity(size_t point) const;  ///< with exchange
+    [[nodiscard]] double dissolved_air(size_t point) const;      ///< kg per m3 of water; likewise
     [[nodiscard]] double pore_stress(size_t point) const;
     [[nodiscard]] double water() const;  ///< in the ground, m3 per metre of thickness; 0: dry
     [[nodiscard]] WaterExchange water_exchange() const;
@@ -79,7 +86,8 @@ public:
 private:
     using Mixture = ExplicitMixture<Filling::unsaturated>;
     using ThreePhases = ExplicitMixture<Filling::three_phase>;
-    using Motion = std::variant<ExplicitMotion, Mixture, ThreePhases>;
+    using Exchange = ExplicitMixture<Filling::exchange>;
+    using Motion = std::variant<ExplicitMotion, Mixture, ThreePhases, Exchange>;
     /// query(mixture) of ground with water, else nothing.
     template <class Query>
     auto of_mixture(const Query& query) const;

@@ -1,5 +1,6 @@
 #include "scene/validate.hpp"
 
+#include "materials/hydraulic/fluid_exchange.hpp"
 #include "scene/check.hpp"
 #include "scene/message.hpp"
 
@@ -54,14 +55,32 @@ void check_regime(const Check& check, const Scene& scene) {
         rest_speed.unused(rests, "a ground whose regime is not dynamic");
         return;
     }
-    rest_speed.require(!(rests && scene.physics.water),
-                       "= " + value_text(scene.dynamics.rest_speed) + " m/s: is not supported yet where the ground holds water");
+    rest_speed.require(!(rests && scene.physics.water), "= " + value_text(scene.dynamics.rest_speed) +
+                                                            " m/s: is not supported yet where the ground holds water");
     cell_size.needed(given_positive(scene.dynamics.cell_size), "a dynamic ground");
     const Check physics = check.at("physics");
     physics.at("deforming").require(scene.physics.deforming, "= false: must be true where the regime is dynamic");
     physics.at("regime").require(scene.ground.kind != GroundKind::column,
                                  "= dynamic: must be quasiStatic in a column; a dynamic ground is a section or a mesh");
     if (scene.physics.water) check_moving_water(check, scene);
+}
+
+/// What of the gas only its exchange with the water needs.
+void check_exchange(const Check& check, const Scene& scene) {
+    const Gas &gas = scene.gas, plain;
+    if (scene.physics.exchange)
+        check.at("temperature")
+            .require(!(saturated_vapour_pressure(gas.temperature) >= gas.atmosphere),
+                     "= " + value_text(gas.temperature) +
+                         " K: must be below that at which water boils under the atmosphere of " +
+                         value_text(gas.atmosphere) + " Pa");
+    if (scene.physics.exchange || !scene.physics.gas) return;
+    const std::string who = "a gas that exchanges nothing with the water (physics.exchange)";
+    check.at("temperature").unused(gas.temperature != plain.temperature, who);
+    check.at("henryConstant").unused(gas.henry_constant != plain.henry_constant, who);
+    check.at("vapourDiffusivity").unused(gas.vapour_diffusivity != plain.vapour_diffusivity, who);
+    check.at("airDiffusivity").unused(gas.air_diffusivity != plain.air_diffusivity, who);
+    check.at("humidity").unused(gas.humidity != plain.humidity, who);
 }
 
 void check_physics(const Check& check, const Scene& scene) {
@@ -79,6 +98,10 @@ void check_physics(const Check& check, const Scene& scene) {
     check.at("physics").at("gas").require(!physics.gas || may_move,
                                           "= true: needs water and a regime that is not quasiStatic");
     check.at("gas").unused(!physics.gas && !(scene.gas == Gas{}), "a ground whose gas does not move (physics.gas)");
+    check.at("physics")
+        .at("exchange")
+        .require(!physics.exchange || physics.gas, "= true: needs physics.gas, a gas that moves");
+    check_exchange(check.at("gas"), scene);
     check.at("name").require(scene.name.find_first_of("/\\") == std::string::npos,
                              "'" + scene.name + "': must have no slash; files are named after it");
 }
