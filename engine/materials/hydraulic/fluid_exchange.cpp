@@ -6,11 +6,11 @@
 namespace talus {
 namespace {
 
-/// Where the pores hold a given saturation: the fluids' state, and what water is in them.
+/// Where the pores hold a given saturation: the fluids' state and what water is in them, and the slopes by the saturation.
 struct Filled {
     Partition partition;
-    double water;        // kg per m3 of pores
-    double water_slope;  // its by the saturation
+    double water;  // kg per m3 of pores
+    double water_slope, suction_slope, gas_slope, vapour_slope, dissolved_slope;
 };
 
 SaturationTable::MixedState state_at(const SaturationTable& table, double saturation, double& slope) {
@@ -36,10 +36,27 @@ Filled fill(const SaturationTable& table, const FluidExchange& fluids, double ai
     const double pressing_slope = is_pressed ? gas_slope - suction_slope : gas < 0 ? gas_slope : 0.0;
     const double dissolved = fluids.solubility * air_in_gas;
     const double density = fluids.liquid_density * (1 + pressing / fluids.bulk_modulus);
+    const double water_slope = density + saturation * fluids.liquid_density * pressing_slope / fluids.bulk_modulus -
+                               dissolved / per_solubility - vapour + room * vapour_slope;
     return {{saturation, liquid, gas, vapour, dissolved, state},
             saturation * (density - dissolved) + room * vapour,
-            density + saturation * fluids.liquid_density * pressing_slope / fluids.bulk_modulus -
-                dissolved / per_solubility - vapour + room * vapour_slope};
+            water_slope,
+            suction_slope,
+            gas_slope,
+            vapour_slope,
+            dissolved * (1 - fluids.solubility) / per_solubility};
+}
+
+/// At a saturation so near that the slopes tell the rest.
+Partition beside(const Filled& found, double step) {
+    Partition partition = found.partition;
+    partition.saturation += step;
+    partition.gas_pressure += step * found.gas_slope;
+    partition.water_pressure += step * (found.gas_slope - found.suction_slope);
+    partition.vapour += step * found.vapour_slope;
+    partition.dissolved += step * found.dissolved_slope;
+    partition.state.suction += step * found.suction_slope;
+    return partition;
 }
 
 /// Pores full of liquid, in which all of the air is dissolved.
@@ -80,7 +97,7 @@ FluidExchange fluid_exchange(double air_density, double atmosphere, double tempe
 Partition find_partition(const SaturationTable& table, const FluidExchange& fluids, double water, double air,
                          double start) {
     constexpr int most_iterations = 100;
-    constexpr double tolerance = 1e-12;
+    constexpr double near = 1e-6;  // of the saturation, or of what gas has: its square is what the last step leaves
     const double of_air = std::max(air, 0.0);
     const double bubbles_at =
         fluids.air * of_air / fluids.solubility + fluids.vapour * fluids.saturated_vapour - fluids.atmosphere;
@@ -98,15 +115,16 @@ Partition find_partition(const SaturationTable& table, const FluidExchange& flui
     }
     double low = 0, high = 1, saturation = std::clamp(start, 1e-12, 1 - 1e-9);
     Filled found{};
+    double step = 0;
     for (int i = 0; i < most_iterations; ++i) {
         found = fill(table, fluids, of_air, saturation);
-        const double step = (water - found.water) / found.water_slope;
-        if (std::abs(step) <= tolerance * std::min(saturation, 1 - saturation) + 1e-16) break;
+        step = (water - found.water) / found.water_slope;
+        if (std::abs(step) <= near * std::min(saturation, 1 - saturation)) break;
         (found.water > water ? high : low) = saturation;
         saturation += step;
         if (!(saturation > low && saturation < high)) saturation = 0.5 * (low + high);
     }
-    return found.partition;
+    return beside(found, std::clamp(step, low - saturation, high - saturation));
 }
 
 }  // namespace talus
