@@ -122,7 +122,7 @@ struct Gas {
   # Its viscosity over the water's.
   atmosphere @2 :Float64 = 101325 $limits(unit = "Pa", low = 1e3, high = 1e8, slips = .pressureSlips);
   # Absolute pressure of the atmosphere.
-  temperature @3 :Float64 = 293.15 $limits(unit = "K", low = 273.15, high = 373.15);
+  temperature @3 :Float64 = 293.15 $limits(unit = "K", low = 273.15, high = 323.15);
   # Of the ground and the atmosphere. This and what follows is of physics.exchange alone: the gas is then air and vapour, and the numbers above are the dry air's.
   henryConstant @4 :Float64 = 7.8e-6 $limits(unit = "mol/(m3 Pa)", low = 1e-10, high = 1e-2);
   # Air dissolved in water, per partial pressure of the air.

@@ -1,6 +1,5 @@
 #include "scene/validate.hpp"
 
-#include "materials/hydraulic/fluid_exchange.hpp"
 #include "scene/check.hpp"
 #include "scene/message.hpp"
 
@@ -68,12 +67,11 @@ void check_regime(const Check& check, const Scene& scene) {
 /// What of the gas only its exchange with the water needs.
 void check_exchange(const Check& check, const Scene& scene) {
     const Gas &gas = scene.gas, plain;
-    if (scene.physics.exchange)
-        check.at("temperature")
-            .require(!(saturated_vapour_pressure(gas.temperature) >= gas.atmosphere),
-                     "= " + value_text(gas.temperature) +
-                         " K: must be below that at which water boils under the atmosphere of " +
-                         value_text(gas.atmosphere) + " Pa");
+    constexpr double least_atmosphere = 2e4;  // Pa: under less of it water of 50 degrees comes near to boil
+    check.at("atmosphere")
+        .require(!(scene.physics.exchange && gas.atmosphere < least_atmosphere),
+                 "= " + value_text(gas.atmosphere) + " Pa: must be at least " + value_text(least_atmosphere) +
+                     " Pa where it exchanges water and air (physics.exchange)");
     if (scene.physics.exchange || !scene.physics.gas) return;
     const std::string who = "a gas that exchanges nothing with the water (physics.exchange)";
     check.at("temperature").unused(gas.temperature != plain.temperature, who);

@@ -29,25 +29,9 @@ void add_apparent_cohesion(const std::vector<ExplicitHydraulics>& hydraulics, co
 
 /// Air in pores that it left is never thinner than this share of the atmosphere.
 constexpr double least_gas_pressure = 1e-6;
-constexpr double least_room_share = 1e-6;        // of the pores: no point counts less as room for gas
-constexpr double least_gas_permeability = 1e-9;  // where no gas is left, so that nodes may divide by it
+constexpr double least_room_share = 1e-6;  // of the pores: no point counts less as room for gas
 
 using LogValues = Eigen::Map<Eigen::Array<double, block_size, 1>>;  // logarithms of a block at once
-
-void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
-                const BlockValues& pressure, const BlockValues& flow_mean, const BlockValues& edge_mean,
-                FluidGiftBlock& gift) {
-    for (size_t k = 0; k < count; ++k) {
-        const double whole = pressure[k] + unit_weight * y[k];
-        const double push = volume[k] * whole;
-        gift[k].along_x[0] = gift[k].along_y[1] = push;
-        gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
-        gift[k].value[0] = mass[k] * whole;
-        gift[k].value[1] = mass[k] * flow_mean[k];
-        gift[k].value[2] = volume[k];
-        gift[k].value[3] = mass[k] * edge_mean[k];
-    }
-}
 
 }  // namespace
 

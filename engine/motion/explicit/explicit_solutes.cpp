@@ -11,9 +11,6 @@
 namespace talus {
 namespace {
 
-/// Where hardly any fluid is left, so that nodes may divide by it.
-constexpr double least_liquid_permeability = 1e-30, least_gas_permeability = 1e-9;
-
 double fraction_of(double solute, double fluid) { return fluid > 0 ? solute / fluid : 0; }
 
 /// n^(1/3) S^(7/3) of a fluid in so much of the ground (Millington & Quirk 1961).
