@@ -116,6 +116,8 @@ private:
     };
     [[nodiscard]] PoreStiffness pore_stiffness(size_t p, double porosity) const;
 
+    [[nodiscard]] double gas_speed_squared(size_t p, double porosity) const;
+
     void arrange_points();
     /// Of the pores, by the point's water; above 1 it is pressed together.
     [[nodiscard]] double share_filled(size_t p) const {
