@@ -29,8 +29,8 @@ def box_rows():
 
 def vapour_rows():
     """A hundred times the diffusivity of vapour in air: only the clock's rate depends on it."""
-    for name, cells, lower, upper, alpha, exponent, times in (("dry", 40, 0.9, 0.1, 1e-3, 4, (0.1, 0.5, 2.0)),
-                                                              ("moist", 25, 0.603, 0.597, 7e-4, 2, (1.0, 3.0, 8.0))):
+    for name, cells, lower, upper, alpha, exponent, times in (("dry", 40, 0.9, 0.1, 1e-3, 4, (0.1, 0.3, 1.0)),
+                                                              ("moist", 25, 0.603, 0.597, 7e-4, 2, (1.0, 2.0, 4.0))):
         column = vapour_diffusion.Column(2.4e-3, alpha=alpha, exponent=exponent)
         retardation = 1 if name == "dry" else column.retardation((lower + upper) / 2)
         with Clock() as clock:

@@ -408,7 +408,7 @@ void vapour_diffusion(size_t cells, double lower, double upper, const Hydraulics
         points[gas_mass][p] =
             points[vapour_mass][p] + (fluids.atmosphere - fluids.vapour * vapour) / fluids.air * (1 - wet) * pores;
     }
-    auto column = closed_column(ground, cells, 1e-4, std::move(points), soil, exchange);
+    auto column = closed_column(ground, cells, 3e-7, std::move(points), soil, exchange);
     std::puts("[");
     double now = 0;
     for (const double time : times) {
