@@ -226,6 +226,12 @@ void fill_with_moist_gas(const Scene& scene, const FluidExchange& fluids, FreePo
 
 double sum(const Energies& energies) { return energies.kinetic + energies.elastic + energies.potential; }
 
+double held(const FreePoints& points, PointField mass, PointField due) {
+    double sum = 0;
+    for (size_t p = 0; p < points.count; ++p) sum += points[mass][p] + points[due][p];
+    return sum;
+}
+
 double largest_speed(const FreePoints& points) {
     double largest = 0;
     for (size_t p = 0; p < points.count; ++p)
@@ -334,6 +340,7 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
       motion_(make_motion(scene, mesh, mesh_points, handover, threads)),
       water_density_(scene.water.density),
       may_rest_(scene.physics.regime == MotionRegime::automatic) {
+    start_solutes_ = solutes();
     start_energy_ = std::visit([](const auto& motion) { return sum(motion.energies()); }, motion_);
     for (const Soil& soil : scene.soils) grain_density_.push_back(soil.dry_density / (1 - soil.porosity));
     const FreePoints& points = this->points();
@@ -472,14 +479,12 @@ double DynamicGround::pore_stress(size_t point) const {
 
 double DynamicGround::water() const {
     if (!has_water()) return 0;
-    const auto held = [this](PointField mass, PointField due) {
-        double sum = 0;
-        for (size_t p = 0; p < points().count; ++p) sum += points()[mass][p] + points()[due][p];
-        return sum;
-    };
-    double mass = held(water_mass, water_due);
-    if (has_exchange()) mass += held(vapour_mass, vapour_due) - held(dissolved_mass, dissolved_due);
-    return mass / water_density_;
+    return (held(points(), water_mass, water_due) - solutes() + start_solutes_) / water_density_;
+}
+
+double DynamicGround::solutes() const {
+    if (!has_exchange()) return 0;
+    return held(points(), dissolved_mass, dissolved_due) - held(points(), vapour_mass, vapour_due);
 }
 
 double DynamicGround::porosity(size_t point) const {

@@ -73,7 +73,9 @@ public:
     [[nodiscard]] double relative_humidity(size_t point) const;  ///< with exchange
     [[nodiscard]] double dissolved_air(size_t point) const;      ///< kg per m3 of water; likewise
     [[nodiscard]] double pore_stress(size_t point) const;
-    [[nodiscard]] double water() const;  ///< in the ground, m3 per metre of thickness; 0: dry
+    /// In the ground, m3 per metre of thickness; 0: dry. With exchange the liquid of the start, and the water that came and went since as liquid
+    /// or vapour.
+    [[nodiscard]] double water() const;
     [[nodiscard]] WaterExchange water_exchange() const;
     [[nodiscard]] double porosity(size_t point) const;
     [[nodiscard]] MotionReport report() const;
@@ -97,12 +99,14 @@ private:
     bool move(Moving& motion, double from, double until, const Cancelled& cancelled);
     template <class Moving>
     void look(const Moving& motion, double time);
+    [[nodiscard]] double solutes() const;  // kg, of air in the water less vapour
     void check_numbers() const;
     void check_pores(double time) const;
 
     std::vector<ExplicitSoil> soils_;
     Motion motion_;
     double water_density_ = 0;           // kg/m3
+    double start_solutes_ = 0;           // kg, of air in the water less vapour, at the start
     std::vector<double> grain_density_;  // per soil, kg/m3
     std::vector<double> start_position_;
     bool may_rest_ = false;  // whether the motion ends where it rests

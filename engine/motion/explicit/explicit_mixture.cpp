@@ -117,9 +117,10 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
         std::copy_n(points_[water_due] + first, count, fluids.pressure.begin());
         std::copy_n(points_[gas_due] + first, count, fluids.gas_pressure.begin());
         find_potential(first, count, fluids);
-        if constexpr (exchanges)
+        if constexpr (exchanges) {
             even_out_solutes(first, count, spline, dt, fluids, keeps ? dissolved_due : dissolved_mass,
                              keeps ? vapour_due : vapour_mass);
+        }
         gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
         for (size_t k = 0; k < count; ++k)
             pass(gas_mass, gas_due, k,

@@ -157,9 +157,10 @@ void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, 
     solutes.evenings[node].gas = {fraction * gas.evening[node].x, fraction * gas.evening[node].y};
     const double crossing = gas.returned[node] - dot(fluid.flux, fluid.outwards);
     double inflow = crossing * (crossing > 0 ? solutes.outer_vapour : fraction);
-    if (edge.distance > 0)
-        inflow += (1 - wetted_share(node)) * content * diffusion * edge.length * (solutes.outer_vapour - fraction) /
-                  edge.distance;
+    if (edge.distance > 0) {
+        const double drier = solutes.outer_vapour - fraction;
+        inflow += (1 - wetted_share(node)) * content * diffusion * edge.length * drier / edge.distance;
+    }
     solutes.returned[node].vapour = dot(vapour.flux, fluid.outwards) + inflow;
     solutes.evaporated -= dt * inflow;
     gas.escaped += dt * inflow;
