@@ -466,11 +466,11 @@ double DynamicGround::saturation(size_t point) const {
 }
 
 double DynamicGround::relative_humidity(size_t point) const {
-    return of_mixture([&](const auto& mixture) { return mixture.relative_humidity(point); });
+    return has_exchange() ? std::get<Exchange>(motion_).relative_humidity(point) : 0;
 }
 
 double DynamicGround::dissolved_air(size_t point) const {
-    return of_mixture([&](const auto& mixture) { return mixture.dissolved_air(point); });
+    return has_exchange() ? std::get<Exchange>(motion_).dissolved_air(point) : 0;
 }
 
 double DynamicGround::pore_stress(size_t point) const {

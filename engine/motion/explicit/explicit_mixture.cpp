@@ -639,18 +639,6 @@ double ExplicitMixture<filling>::saturation(size_t point) const {
     return std::min(share_filled(point), 1.0);
 }
 
-template <Filling filling>
-double ExplicitMixture<filling>::relative_humidity(size_t point) const {
-    if constexpr (!exchanges) return 0;
-    return partition_of(point).vapour / exchange_.saturated_vapour;
-}
-
-template <Filling filling>
-double ExplicitMixture<filling>::dissolved_air(size_t point) const {
-    if constexpr (!exchanges) return 0;
-    return partition_of(point).dissolved;
-}
-
 template class ExplicitMixture<Filling::saturated>;
 template class ExplicitMixture<Filling::unsaturated>;
 template class ExplicitMixture<Filling::three_phase>;

@@ -90,7 +90,7 @@ public:
     [[nodiscard]] double pressure(size_t point) const;
     [[nodiscard]] double gas_pressure(size_t point) const;  ///< Pa; 0: at rest
     [[nodiscard]] double saturation(size_t point) const;
-    [[nodiscard]] double relative_humidity(size_t point) const;  ///< with exchange
+    [[nodiscard]] double relative_humidity(size_t point) const;  ///< with exchange alone
     [[nodiscard]] double dissolved_air(size_t point) const;      ///< kg per m3 of water; likewise
     /// What the points' stress is short of the total one, Pa.
     [[nodiscard]] double pore_stress(size_t point) const;
@@ -182,6 +182,10 @@ template <>
 void ExplicitMixture<Filling::exchange>::find_partitions(size_t first, size_t count, FluidBlock& fluids) const;
 template <>
 Partition ExplicitMixture<Filling::exchange>::partition_of(size_t p) const;
+template <>
+double ExplicitMixture<Filling::exchange>::relative_humidity(size_t point) const;
+template <>
+double ExplicitMixture<Filling::exchange>::dissolved_air(size_t point) const;
 template <>
 void ExplicitMixture<Filling::exchange>::settle(size_t first, size_t count, const FluidBlock& fluids);
 template <>

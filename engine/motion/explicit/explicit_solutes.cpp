@@ -43,6 +43,16 @@ Partition ExplicitMixture<Filling::exchange>::partition_of(size_t p) const {
 }
 
 template <>
+double ExplicitMixture<Filling::exchange>::relative_humidity(size_t point) const {
+    return partition_of(point).vapour / exchange_.saturated_vapour;
+}
+
+template <>
+double ExplicitMixture<Filling::exchange>::dissolved_air(size_t point) const {
+    return partition_of(point).dissolved;
+}
+
+template <>
 void ExplicitMixture<Filling::exchange>::find_partitions(size_t first, size_t count, FluidBlock& fluids) const {
     BlockValues pores;
     find_pores(first, count, pores);
