@@ -41,6 +41,8 @@ ordered_json text_or_null(const char* text) { return text != nullptr ? ordered_j
 ordered_json left_out(const Scene& scene) {
     ordered_json list = ordered_json::array();
     if (!scene.physics.gas) list.push_back("gas flow: gas pressure is that of the atmosphere");
+    if (scene.physics.gas && !scene.physics.exchange)
+        list.push_back("exchange between the fluids: no vapour, no dissolved air");
     const bool is_dynamic = scene.physics.regime != MotionRegime::quasi_static;
     if (!is_dynamic) list.push_back("inertia: equilibrium is quasi-static");
     if (is_dynamic && scene.physics.water)
@@ -82,6 +84,7 @@ std::string Engine::State::describe() const {
     json["dimension"] = mesh.dimension;
     json["physics"] = {{"water", s.physics.water},
                        {"gas", s.physics.gas},
+                       {"exchange", s.physics.exchange},
                        {"deforming", s.physics.deforming},
                        {"stress", s.physics.stress == StressMeasure::net ? "net" : "bishop"},
                        {"regime", dynamic != nullptr ? "dynamic" : "quasi_static"}};

@@ -9,7 +9,7 @@
 namespace talus {
 namespace {
 
-enum class Needs { nothing, water, gas };
+enum class Needs { nothing, water, gas, exchange };
 
 struct PointEntry {
     const char* name;
@@ -26,6 +26,8 @@ constexpr std::array entries{
     PointEntry{"point_soil", "1", "", 1, false, Needs::nothing},
     PointEntry{"point_pressure", "Pa", "soil_water__pressure", 1, false, Needs::water},
     PointEntry{"gas_pressure", "Pa", "", 1, true, Needs::gas},
+    PointEntry{"relative_humidity", "1", "", 1, true, Needs::exchange},
+    PointEntry{"dissolved_air", "kg m-3", "", 1, true, Needs::exchange},
     PointEntry{"saturation", "1", "soil_water__saturated_volume_fraction", 1, true, Needs::water},
     PointEntry{"suction", "Pa", "soil_water__suction", 1, true, Needs::water},
     PointEntry{"porosity", "1", "soil__porosity", 1, true, Needs::water},
@@ -41,7 +43,13 @@ constexpr std::array entries{
 
 bool has(const PointEntry& entry, const DynamicGround& ground) {
     if (entry.needs == Needs::gas) return ground.has_gas();
+    if (entry.needs == Needs::exchange) return ground.has_exchange();
     return entry.needs == Needs::nothing || ground.has_water();
+}
+
+const char* missing(Needs needs) {
+    if (needs == Needs::exchange) return "exchange between water and gas";
+    return needs == Needs::gas ? "gas that moves" : "water";
 }
 
 const PointEntry& find_entry(std::string_view name, const DynamicGround& ground) {
@@ -51,8 +59,8 @@ const PointEntry& find_entry(std::string_view name, const DynamicGround& ground)
         throw Error(Status::unknown_field, "a dynamic ground has no field '" + std::string(name) +
                                                "': it has no mesh, only fields of its points (see describe)");
     if (!has(*found, ground))
-        throw Error(Status::unknown_field, "field '" + std::string(name) + "' is left out: the scene has no " +
-                                               (found->needs == Needs::gas ? "gas that moves" : "water"));
+        throw Error(Status::unknown_field,
+                    "field '" + std::string(name) + "' is left out: the scene has no " + missing(found->needs));
     return *found;
 }
 
@@ -107,6 +115,9 @@ std::vector<double> derive_water(std::string_view name, const DynamicGround& gro
     if (name == "porosity") return each_by_number(points, [&](size_t p) { return ground.porosity(p); });
     if (name == "saturation") return each_by_number(points, [&](size_t p) { return ground.saturation(p); });
     if (name == "gas_pressure") return each_by_number(points, [&](size_t p) { return ground.gas_pressure(p); });
+    if (name == "relative_humidity")
+        return each_by_number(points, [&](size_t p) { return ground.relative_humidity(p); });
+    if (name == "dissolved_air") return each_by_number(points, [&](size_t p) { return ground.dissolved_air(p); });
     if (name == "suction")
         return each_by_number(points,
                               [&](size_t p) { return std::max(ground.gas_pressure(p) - ground.pressure(p), 0.0); });

@@ -156,6 +156,13 @@ ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
     return hydraulics;
 }
 
+ExplicitExchange explicit_exchange(const Scene& scene) {
+    const Gas& gas = scene.gas;
+    FluidExchange fluids = fluid_exchange(gas.density, gas.atmosphere, gas.temperature, gas.henry_constant);
+    fluids.liquid_density = scene.water.density;
+    return {fluids, gas.vapour_diffusivity, gas.air_diffusivity, gas.humidity};
+}
+
 /// Value at a place, from the mesh's nodes; outside the mesh, of the given cell's first node.
 double value_at(const Mesh& mesh, std::span<const double> node_value, const CellPlace& place, int32_t cell) {
     const auto found = static_cast<size_t>(place.cell >= 0 ? place.cell : cell);
@@ -188,18 +195,42 @@ void fill_with_water(const Scene& scene, const Mesh& mesh, const Locator& locato
     }
 }
 
+/// What a point's water leaves of its pores, m2.
+double room_for_gas(const Scene& scene, const FreePoints& points, size_t p) {
+    const Soil& soil = scene.soils[static_cast<size_t>(points.soil[p])];
+    const double grains = points[solid_mass][p] * (1 - soil.porosity) / soil.dry_density;
+    return std::max(points[point_volume][p] - grains - points[water_mass][p] / scene.water.density, 0.0);
+}
+
 /// Gas at the atmosphere's pressure in what the water leaves of the pores.
 void fill_with_gas(const Scene& scene, FreePoints& points) {
+    for (size_t f = wet_fields; f < gas_fields; ++f) points.field[f].assign(points.count, 0.0);
+    for (size_t p = 0; p < points.count; ++p) points[gas_mass][p] = scene.gas.density * room_for_gas(scene, points, p);
+}
+
+/// The same of moist air over water with dissolved air, in equilibrium.
+void fill_with_moist_gas(const Scene& scene, const FluidExchange& fluids, FreePoints& points) {
     for (size_t f = wet_fields; f < point_fields; ++f) points.field[f].assign(points.count, 0.0);
+    std::vector<SaturationTable> tables;
+    for (const Soil& soil : scene.soils) tables.emplace_back(soil.hydraulics, scene.water.bulk_modulus);
     for (size_t p = 0; p < points.count; ++p) {
-        const Soil& soil = scene.soils[static_cast<size_t>(points.soil[p])];
-        const double grains = points[solid_mass][p] * (1 - soil.porosity) / soil.dry_density;
-        const double room = points[point_volume][p] - grains - points[water_mass][p] / scene.water.density;
-        points[gas_mass][p] = scene.gas.density * std::max(room, 0.0);
+        const double room = room_for_gas(scene, points, p), liquid = points[water_mass][p] / scene.water.density;
+        const SaturationTable& table = tables[static_cast<size_t>(points.soil[p])];
+        const double vapour = fluids.vapour_density(-table.at(liquid / (liquid + room)).pressure);
+        const double air = (fluids.atmosphere - fluids.vapour * vapour) / fluids.air;
+        points[vapour_mass][p] = vapour * room;
+        points[gas_mass][p] = (air + vapour) * room;
+        points[dissolved_mass][p] = fluids.solubility * air * liquid;
     }
 }
 
 double sum(const Energies& energies) { return energies.kinetic + energies.elastic + energies.potential; }
+
+double held(const FreePoints& points, PointField mass, PointField due) {
+    double sum = 0;
+    for (size_t p = 0; p < points.count; ++p) sum += points[mass][p] + points[due][p];
+    return sum;
+}
 
 double largest_speed(const FreePoints& points) {
     double largest = 0;
@@ -286,11 +317,18 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     const bool is_net = scene.physics.stress == StressMeasure::net;
     const ExplicitWater water{scene.water.density, scene.water.bulk_modulus,
                               is_net ? PoreStress::net : PoreStress::bishop};
+    const ExplicitGas gas{scene.gas.density, scene.gas.atmosphere};
+    if (scene.physics.exchange) {
+        const ExplicitExchange exchange = explicit_exchange(scene);
+        fill_with_moist_gas(scene, exchange.fluids, seeded.points);
+        return Motion(std::in_place_type<Exchange>, cell_size, walls, scene.gravity, explicit_soils(scene),
+                      std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads, gas,
+                      exchange);
+    }
     if (scene.physics.gas) {
         fill_with_gas(scene, seeded.points);
         return Motion(std::in_place_type<ThreePhases>, cell_size, walls, scene.gravity, explicit_soils(scene),
-                      std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads,
-                      ExplicitGas{scene.gas.density, scene.gas.atmosphere});
+                      std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads, gas);
     }
     return Motion(std::in_place_type<Mixture>, cell_size, walls, scene.gravity, explicit_soils(scene),
                   std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads);
@@ -302,6 +340,7 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
       motion_(make_motion(scene, mesh, mesh_points, handover, threads)),
       water_density_(scene.water.density),
       may_rest_(scene.physics.regime == MotionRegime::automatic) {
+    start_solutes_ = solutes();
     start_energy_ = std::visit([](const auto& motion) { return sum(motion.energies()); }, motion_);
     for (const Soil& soil : scene.soils) grain_density_.push_back(soil.dry_density / (1 - soil.porosity));
     const FreePoints& points = this->points();
@@ -426,16 +465,26 @@ double DynamicGround::saturation(size_t point) const {
     return of_mixture([&](const auto& mixture) { return mixture.saturation(point); });
 }
 
+double DynamicGround::relative_humidity(size_t point) const {
+    return has_exchange() ? std::get<Exchange>(motion_).relative_humidity(point) : 0;
+}
+
+double DynamicGround::dissolved_air(size_t point) const {
+    return has_exchange() ? std::get<Exchange>(motion_).dissolved_air(point) : 0;
+}
+
 double DynamicGround::pore_stress(size_t point) const {
     return of_mixture([&](const auto& mixture) { return mixture.pore_stress(point); });
 }
 
 double DynamicGround::water() const {
     if (!has_water()) return 0;
-    double sum = 0;
-    for (const PointField name : {water_mass, water_due})
-        for (size_t p = 0; p < points().count; ++p) sum += points()[name][p];
-    return sum / water_density_;
+    return (held(points(), water_mass, water_due) - solutes() + start_solutes_) / water_density_;
+}
+
+double DynamicGround::solutes() const {
+    if (!has_exchange()) return 0;
+    return held(points(), dissolved_mass, dissolved_due) - held(points(), vapour_mass, vapour_due);
 }
 
 double DynamicGround::porosity(size_t point) const {
@@ -446,7 +495,8 @@ double DynamicGround::porosity(size_t point) const {
 WaterExchange DynamicGround::water_exchange() const {
     return of_mixture([this](const auto& mixture) {
         const auto volume = [this](double mass) { return mass / water_density_; };
-        return WaterExchange{volume(mixture.rained()), volume(mixture.run_off()), volume(mixture.seepage())};
+        return WaterExchange{volume(mixture.rained()), volume(mixture.run_off()),
+                             volume(mixture.seepage() + mixture.evaporated())};
     });
 }
 

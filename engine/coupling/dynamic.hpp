@@ -26,7 +26,7 @@ using RainAt = std::function<double(double x)>;
 struct WaterExchange {
     double rain = 0;
     double run_off = 0;
-    double seepage = 0;
+    double seepage = 0;  ///< what evaporated included
 };
 
 /// What a ground of a mesh hands over to its material points.
@@ -60,13 +60,22 @@ public:
     [[nodiscard]] const FreePoints& points() const;
     [[nodiscard]] double cell_size() const;
     [[nodiscard]] bool has_water() const { return !std::holds_alternative<ExplicitMotion>(motion_); }
-    [[nodiscard]] bool has_gas() const { return std::holds_alternative<ThreePhases>(motion_); }  ///< that moves
+    [[nodiscard]] bool has_gas() const {
+        return std::holds_alternative<ThreePhases>(motion_) || has_exchange();
+    }  ///< that moves
+    [[nodiscard]] bool has_exchange() const {
+        return std::holds_alternative<Exchange>(motion_);
+    }  ///< between the fluids
     // Of a point, where there is water; Pa, -.
     [[nodiscard]] double pressure(size_t point) const;
     [[nodiscard]] double gas_pressure(size_t point) const;  ///< 0: at rest
     [[nodiscard]] double saturation(size_t point) const;
+    [[nodiscard]] double relative_humidity(size_t point) const;  ///< with exchange
+    [[nodiscard]] double dissolved_air(size_t point) const;      ///< kg per m3 of water; likewise
     [[nodiscard]] double pore_stress(size_t point) const;
-    [[nodiscard]] double water() const;  ///< in the ground, m3 per metre of thickness; 0: dry
+    /// In the ground, m3 per metre of thickness; 0: dry. With exchange the liquid of the start, and the water that came and went since as liquid
+    /// or vapour.
+    [[nodiscard]] double water() const;
     [[nodiscard]] WaterExchange water_exchange() const;
     [[nodiscard]] double porosity(size_t point) const;
     [[nodiscard]] MotionReport report() const;
@@ -79,7 +88,8 @@ public:
 private:
     using Mixture = ExplicitMixture<Filling::unsaturated>;
     using ThreePhases = ExplicitMixture<Filling::three_phase>;
-    using Motion = std::variant<ExplicitMotion, Mixture, ThreePhases>;
+    using Exchange = ExplicitMixture<Filling::exchange>;
+    using Motion = std::variant<ExplicitMotion, Mixture, ThreePhases, Exchange>;
     /// query(mixture) of ground with water, else nothing.
     template <class Query>
     auto of_mixture(const Query& query) const;
@@ -89,12 +99,14 @@ private:
     bool move(Moving& motion, double from, double until, const Cancelled& cancelled);
     template <class Moving>
     void look(const Moving& motion, double time);
+    [[nodiscard]] double solutes() const;  // kg, of air in the water less vapour
     void check_numbers() const;
     void check_pores(double time) const;
 
     std::vector<ExplicitSoil> soils_;
     Motion motion_;
     double water_density_ = 0;           // kg/m3
+    double start_solutes_ = 0;           // kg, of air in the water less vapour, at the start
     std::vector<double> grain_density_;  // per soil, kg/m3
     std::vector<double> start_position_;
     bool may_rest_ = false;  // whether the motion ends where it rests

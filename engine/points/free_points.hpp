@@ -27,7 +27,7 @@ enum PointField : size_t {
     solid_mass,    ///< kg per metre of thickness
     plastic_shear_strain,
     dry_fields,               ///< so many has a dry ground
-    water_mass = dry_fields,  ///< kg per metre of thickness
+    water_mass = dry_fields,  ///< of the liquid, kg per metre of thickness
     water_due,                ///< that flows to the point in the step to come, kg
     liquid_velocity_x,        ///< m/s
     liquid_velocity_y,
@@ -44,7 +44,12 @@ enum PointField : size_t {
     gas_affine_xy,
     gas_affine_yx,
     gas_affine_yy,
-    point_fields
+    gas_fields,                ///< so many has a ground whose gas moves
+    vapour_mass = gas_fields,  ///< of the gas's mass, kg per metre of thickness
+    vapour_due,                ///< as the water's
+    dissolved_mass,            ///< air, of the liquid's mass, kg per metre of thickness
+    dissolved_due,             ///< as the water's
+    point_fields               ///< so many has a ground whose fluids exchange water and air
 };
 
 struct FreePoints {

@@ -22,6 +22,7 @@ void fields(auto& visit, Is<Physics> auto& physics) {
     visit("stress", physics.stress);
     visit("regime", physics.regime);
     visit("gas", physics.gas);
+    visit("exchange", physics.exchange);
 }
 
 void fields(auto& visit, Is<Water> auto& water) {
@@ -33,6 +34,11 @@ void fields(auto& visit, Is<Gas> auto& gas) {
     visit("density", gas.density);
     visit("viscosityRatio", gas.viscosity_ratio);
     visit("atmosphere", gas.atmosphere);
+    visit("temperature", gas.temperature);
+    visit("henryConstant", gas.henry_constant);
+    visit("vapourDiffusivity", gas.vapour_diffusivity);
+    visit("airDiffusivity", gas.air_diffusivity);
+    visit("humidity", gas.humidity);
 }
 
 // --- soils -----------------------------------------------------------------------------------------------------------

@@ -33,6 +33,7 @@ const rainSlips :List(Slip) = [(unit = "m/h", factor = 2.7778e-4), (unit = "mm/h
 const densitySlips :List(Slip) = [(unit = "g/cm3", factor = 1e3), (unit = "kN/m3", factor = 101.97)];
 const fractionSlips :List(Slip) = [(unit = "percent", factor = 1e-2)];
 const angleSlips :List(Slip) = [(unit = "radians", factor = 57.296)];
+const diffusivitySlips :List(Slip) = [(unit = "cm2/s", factor = 1e-4)];
 const lengthSlips :List(Slip) = [(unit = "cm", factor = 1e-2), (unit = "mm", factor = 1e-3)];
 
 struct Scene {
@@ -82,6 +83,8 @@ struct Physics {
   # How the skeleton moves.
   gas @4 :Bool = false;
   # Whether the pore gas of a dynamic ground that holds water moves and is pressed together; false: its pressure is the atmosphere's.
+  exchange @5 :Bool = false;
+  # Whether water evaporates into a gas that moves, and air dissolves in the water, each always in equilibrium with the other.
 }
 
 enum Regime {
@@ -119,6 +122,16 @@ struct Gas {
   # Its viscosity over the water's.
   atmosphere @2 :Float64 = 101325 $limits(unit = "Pa", low = 1e3, high = 1e8, slips = .pressureSlips);
   # Absolute pressure of the atmosphere.
+  temperature @3 :Float64 = 293.15 $limits(unit = "K", low = 273.15, high = 323.15);
+  # Of the ground and the atmosphere. This and what follows is of physics.exchange alone: the gas is then air and vapour, and the numbers above are the dry air's.
+  henryConstant @4 :Float64 = 7.8e-6 $limits(unit = "mol/(m3 Pa)", low = 1e-10, high = 1e-2);
+  # Air dissolved in water, per partial pressure of the air.
+  vapourDiffusivity @5 :Float64 = 2.4e-5 $limits(unit = "m2/s", low = 1e-9, high = 1e-2, slips = .diffusivitySlips);
+  # Of vapour in air.
+  airDiffusivity @6 :Float64 = 2e-9 $limits(unit = "m2/s", low = 1e-12, high = 1e-6, orZero = true, slips = .diffusivitySlips);
+  # Of dissolved air in water.
+  humidity @7 :Float64 = 1 $limits(low = 0, high = 1, slips = .fractionSlips);
+  # Relative humidity of the atmosphere.
 }
 
 struct Soil {

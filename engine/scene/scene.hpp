@@ -44,6 +44,12 @@ struct Gas {
     double density = 1.2041;         ///< at the atmosphere's pressure, kg/m3
     double viscosity_ratio = 0.018;  ///< over the water's, -
     double atmosphere = 101325;      ///< Pa, absolute
+    // Of exchange with the water:
+    double temperature = 293.15;         ///< K
+    double henry_constant = 7.8e-6;      ///< mol/(m3 Pa)
+    double vapour_diffusivity = 2.4e-5;  ///< in air, m2/s
+    double air_diffusivity = 2e-9;       ///< in water, m2/s
+    double humidity = 1;                 ///< of the atmosphere, relative
     bool operator==(const Gas&) const = default;
 };
 
@@ -169,7 +175,8 @@ struct Physics {
     bool deforming = true;  ///< false: rigid skeleton
     StressMeasure stress = StressMeasure::net;
     MotionRegime regime = MotionRegime::quasi_static;
-    bool gas = false;  ///< whether the gas moves; false: its pressure is the atmosphere's
+    bool gas = false;       ///< whether the gas moves; false: its pressure is the atmosphere's
+    bool exchange = false;  ///< whether water evaporates into it and it dissolves in the water
 };
 
 struct Numerics {

@@ -54,14 +54,31 @@ void check_regime(const Check& check, const Scene& scene) {
         rest_speed.unused(rests, "a ground whose regime is not dynamic");
         return;
     }
-    rest_speed.require(!(rests && scene.physics.water),
-                       "= " + value_text(scene.dynamics.rest_speed) + " m/s: is not supported yet where the ground holds water");
+    rest_speed.require(!(rests && scene.physics.water), "= " + value_text(scene.dynamics.rest_speed) +
+                                                            " m/s: is not supported yet where the ground holds water");
     cell_size.needed(given_positive(scene.dynamics.cell_size), "a dynamic ground");
     const Check physics = check.at("physics");
     physics.at("deforming").require(scene.physics.deforming, "= false: must be true where the regime is dynamic");
     physics.at("regime").require(scene.ground.kind != GroundKind::column,
                                  "= dynamic: must be quasiStatic in a column; a dynamic ground is a section or a mesh");
     if (scene.physics.water) check_moving_water(check, scene);
+}
+
+/// What of the gas only its exchange with the water needs.
+void check_exchange(const Check& check, const Scene& scene) {
+    const Gas &gas = scene.gas, plain;
+    constexpr double least_atmosphere = 2e4;  // Pa: under less of it water of 50 degrees comes near to boil
+    check.at("atmosphere")
+        .require(!(scene.physics.exchange && gas.atmosphere < least_atmosphere),
+                 "= " + value_text(gas.atmosphere) + " Pa: must be at least " + value_text(least_atmosphere) +
+                     " Pa where it exchanges water and air (physics.exchange)");
+    if (scene.physics.exchange || !scene.physics.gas) return;
+    const std::string who = "a gas that exchanges nothing with the water (physics.exchange)";
+    check.at("temperature").unused(gas.temperature != plain.temperature, who);
+    check.at("henryConstant").unused(gas.henry_constant != plain.henry_constant, who);
+    check.at("vapourDiffusivity").unused(gas.vapour_diffusivity != plain.vapour_diffusivity, who);
+    check.at("airDiffusivity").unused(gas.air_diffusivity != plain.air_diffusivity, who);
+    check.at("humidity").unused(gas.humidity != plain.humidity, who);
 }
 
 void check_physics(const Check& check, const Scene& scene) {
@@ -79,6 +96,10 @@ void check_physics(const Check& check, const Scene& scene) {
     check.at("physics").at("gas").require(!physics.gas || may_move,
                                           "= true: needs water and a regime that is not quasiStatic");
     check.at("gas").unused(!physics.gas && !(scene.gas == Gas{}), "a ground whose gas does not move (physics.gas)");
+    check.at("physics")
+        .at("exchange")
+        .require(!physics.exchange || physics.gas, "= true: needs physics.gas, a gas that moves");
+    check_exchange(check.at("gas"), scene);
     check.at("name").require(scene.name.find_first_of("/\\") == std::string::npos,
                              "'" + scene.name + "': must have no slash; files are named after it");
 }

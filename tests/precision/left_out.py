@@ -89,7 +89,7 @@ def page(result):
 # --- ground in motion ---
 
 COMPOSITIONS = {"dry_elastic": "dry, elastic", "dry_mohr_coulomb": "dry, Mohr-Coulomb", "two_phase": "solid and water",
-                "three_phase": "solid, water and air"}
+                "three_phase": "solid, water and air", "exchange": "the same, with exchange"}
 
 
 def motion_lines(cost):
@@ -100,7 +100,7 @@ def motion_lines(cost):
     known = {name: cost[key] for key, name in COMPOSITIONS.items()}
     full = list(known)[-1]
     lines = [[name, f"{value:.1f}", f"{value / known[full]:.2f}"] for name, value in known.items()]
-    yield from table(["composition", "ns a point and substep", f"of {full}"], lines)
+    yield from table(["composition", "ns a point and substep", "of the last"], lines)
     ratio = cost["dry_scene"] / cost["dry_scene_alone"]
     yield from table(["", "ns a point and substep", "of the loop alone"],
                      [["loop of dry ground alone", f"{cost['dry_scene_alone']:.1f}", "1"],

@@ -389,6 +389,45 @@ TEST_CASE("C API: gas that moves has a pressure of its own, and an undone step l
     CHECK(!leaves_out_gas(engine));
 }
 
+TEST_CASE(
+    "C API: water that evaporates and air that dissolves are in the balance, and an undone step leaves no trace of them") {
+    std::string text = wet_text;
+    text.replace(text.find("\"regime\""), 0, "\"gas\": true, \"exchange\": true, ");
+    text.replace(text.find("\"water\": {"), 0, "\"gas\": {\"humidity\": 0.3}, ");
+    Impatient impatient;
+    talus_options options = TALUS_OPTIONS_INIT;
+    options.progress = Impatient::progress;
+    options.progress_user = &impatient;
+    const host::Engine engine = host::engine(text.c_str(), &options), twin = host::engine(text.c_str());
+    talus_step_report report = TALUS_STEP_REPORT_INIT, plain = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_step(engine.get(), 0.1, &report) == TALUS_OK);
+    impatient.limit = impatient.calls + 3;
+    CHECK(talus_engine_step(engine.get(), 0.1, &report) == TALUS_CANCELLED);
+    REQUIRE(talus_engine_step(engine.get(), 0.1, &report) == TALUS_OK);
+    REQUIRE(talus_engine_step(twin.get(), 0.1, &plain) == TALUS_OK);
+    REQUIRE(talus_engine_step(twin.get(), 0.1, &plain) == TALUS_OK);
+    for (const char* field : {"gas_pressure", "relative_humidity", "dissolved_air"})
+        CHECK(read(engine, field) == read(twin, field));
+    CHECK(std::abs(report.water_residual) < 1e-12 * report.water_stored);
+    const std::vector<double> suction = read(engine, "suction"), humidity = read(engine, "relative_humidity"),
+                              dissolved = read(engine, "dissolved_air");
+    for (size_t p = 0; p < suction.size(); ++p) {
+        // At 20 degrees the suction that halves the humidity is 93.8 MPa; a cubic metre of water takes up 22.3 g of air.
+        CHECK(humidity[p] == doctest::Approx(std::exp2(-suction[p] / 93.8e6)).epsilon(1e-4));
+        CHECK(dissolved[p] / 0.0223 == doctest::Approx(1).epsilon(0.2));
+    }
+    const char* description = nullptr;
+    REQUIRE(talus_engine_describe(engine.get(), &description) == TALUS_OK);
+    CHECK(std::string(description).find("\"exchange\":true") != std::string::npos);
+    text.replace(text.find("\"gas\": {\"humidity\": 0.3}, "), 26, "");
+    text.replace(text.find(", \"exchange\": true"), 18, "");
+    const host::Engine without = host::engine(text.c_str());
+    REQUIRE(talus_engine_describe(without.get(), &description) == TALUS_OK);
+    CHECK(std::string(description).find("exchange between the fluids") != std::string::npos);
+    talus_field field = TALUS_FIELD_INIT;
+    CHECK(talus_engine_view(without.get(), "relative_humidity", &field) == TALUS_UNKNOWN_NAME);
+}
+
 TEST_CASE("C API: from the storm through failure and motion to rest, with every drop of water") {
     Impatient impatient;
     talus_options options = TALUS_OPTIONS_INIT;

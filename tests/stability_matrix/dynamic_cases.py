@@ -87,19 +87,27 @@ def gassy_bank(**numbers):
     return scene
 
 
-def gas_cases():
-    yield Case("dynamic_gas/benign", gassy_bank(), SLIDE)
-    yield Case("dynamic_gas/soft", gassy_bank(young=1e5, poisson=0), SLIDE, may_be_refused="too soft for what it bears",
+def moist_bank(**numbers):
+    """With exchange between the fluids, under dry air."""
+    scene = gassy_bank(**numbers)
+    scene["physics"]["exchange"] = True
+    scene["gas"] = {"humidity": 0.0}
+    return scene
+
+
+def gas_cases(sweep, bank):
+    yield Case(f"{sweep}/benign", bank(), SLIDE)
+    yield Case(f"{sweep}/soft", bank(young=1e5, poisson=0), SLIDE, may_be_refused="too soft for what it bears",
                why="its pores are closed")
-    yield Case("dynamic_gas/dry", gassy_bank(table=-1e3), SLIDE)
-    yield Case("dynamic_gas/full", gassy_bank(table=2.0), SLIDE)
-    yield Case("dynamic_gas/rain", gassy_bank(rain=1e-3, table=-1.0), [["step", 0.1, 20]])
+    yield Case(f"{sweep}/dry", bank(table=-1e3), SLIDE)
+    yield Case(f"{sweep}/full", bank(table=2.0), SLIDE)
+    yield Case(f"{sweep}/rain", bank(rain=1e-3, table=-1.0), [["step", 0.1, 20]])
     for conductivity in (1e-18, 1e-9, 0.3):
-        yield Case(f"dynamic_gas/K_{conductivity:g}", gassy_bank(conductivity=conductivity), SLIDE)
+        yield Case(f"{sweep}/K_{conductivity:g}", bank(conductivity=conductivity), SLIDE)
     for alpha, n in ((1e-7, 1.03), (1e-2, 6), (1e-7, 6)):
-        yield Case(f"dynamic_gas/{alpha:g}_{n:g}", gassy_bank(alpha=alpha, n=n, table=-1.0), SLIDE)
-    yield Case("dynamic_gas/porous", gassy_bank(porosity=0.9), SLIDE)
-    yield Case("dynamic_gas/dense", gassy_bank(porosity=0.05), SLIDE)
+        yield Case(f"{sweep}/{alpha:g}_{n:g}", bank(alpha=alpha, n=n, table=-1.0), SLIDE)
+    yield Case(f"{sweep}/porous", bank(porosity=0.9), SLIDE)
+    yield Case(f"{sweep}/dense", bank(porosity=0.05), SLIDE)
 
 
 def strength_cases():
@@ -126,6 +134,7 @@ def cases():
         yield from sweep.cases()
     yield from flight_cases()
     yield from water_cases()
-    yield from gas_cases()
+    yield from gas_cases("dynamic_gas", gassy_bank)
+    yield from gas_cases("dynamic_exchange", moist_bank)
     yield from strength_cases()
     yield from time_cases()

@@ -79,13 +79,16 @@ void run(int32_t cells, int32_t threads, bool last) {
                                                    {1000, 1e6}, column(cells, wet_fields), threads);
     });
     // Gas is faster than that ground.
+    const auto with_gas = [&]<Filling filling>(size_t fields) {
+        return ExplicitMixture<filling>(size, box, 9.81, {yielding}, {{grain_density, 1e-8, 0, false, 1e-6}},
+                                        {{test::van_genuchten(4e-5, 1.2), 1e6}}, {1000, 1e6}, column(cells, fields),
+                                        threads, {}, {fluid_exchange(1.2041, 101325, 293.15, 7.8e-6)});
+    };
     time(
-        "three_phase", cells, threads, last,
-        [&] {
-            return ExplicitMixture<Filling::three_phase>(
-                size, box, 9.81, {yielding}, {{grain_density, 1e-8, 0, false, 1e-6}},
-                {{test::van_genuchten(4e-5, 1.2), 1e6}}, {1000, 1e6}, column(cells, point_fields), threads);
-        },
+        "three_phase", cells, threads, false,
+        [&] { return with_gas.template operator()<Filling::three_phase>(gas_fields); }, step / 10);
+    time(
+        "exchange", cells, threads, last, [&] { return with_gas.template operator()<Filling::exchange>(point_fields); },
         step / 10);
 }
 

@@ -5,6 +5,7 @@ import functools
 import column
 import dynamic_slides
 import engine_cases
+import explicit_exchange
 import explicit_motion
 import mandel
 import slopes
@@ -22,6 +23,8 @@ CASES = {
     "saturated_wave": explicit_motion.saturated_wave_rows,
     "wave_speeds": explicit_motion.wave_rows,
     "gas_diffusion": explicit_motion.diffusion_rows,
+    "exchange_box": explicit_exchange.box_rows,
+    "vapour_diffusion": explicit_exchange.vapour_rows,
     "column_explicit": explicit_motion.column_rows,
     "column_three_phase": explicit_motion.three_phase_column_rows,
     "column_collapse": dynamic_slides.collapse_rows,

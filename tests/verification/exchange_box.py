@@ -26,7 +26,7 @@ class Box:
     temperature: float = 293.15  # K
     liquid_density: float = 1000.0  # kg/m3, rho_0
     liquid_bulk: float = 2e9  # Pa
-    saturated_vapour: float = 0.01730  # kg/m3, rho_sat: 2339 Pa at 20 degrees
+    saturated_vapour: float = 0.01729  # kg/m3, rho_sat: 2339 Pa at 20 degrees
     henry: float = 7.8e-6  # mol/(m3 Pa)
     water_molar: float = 0.018015  # kg/mol
     air_molar: float = 0.02896  # kg/mol
@@ -81,9 +81,10 @@ def at_equilibrium(box, saturation, gas_pressure):
     return State(saturation, gas_pressure, vapour, box.air_molar * box.henry * air_pressure)
 
 
-def equilibrium(box, start):
-    """Where a box comes to rest; masses kept to 1e-13 of each."""
-    water, air = masses(box, start)
+def equilibrium(box, *parts):
+    """Where a box of equal parts comes to rest; masses kept to 1e-13 of each."""
+    water, air = numpy.mean([masses(box, part) for part in parts], axis=0)
+    start = numpy.mean([part.saturation for part in parts])
 
     def pressure(saturation):
         return brentq(lambda p: masses(box, at_equilibrium(box, saturation, p))[1] - air, -box.atmosphere, 1e8, xtol=1e-10, rtol=1e-15)
@@ -91,7 +92,7 @@ def equilibrium(box, start):
     def surplus(saturation):
         return masses(box, at_equilibrium(box, saturation, pressure(saturation)))[0] - water
 
-    low, high = start.saturation * 0.9, min(start.saturation * 1.1, 1 - 1e-9)
+    low, high = start * 0.9, min(start * 1.1, 1 - 1e-9)
     saturation = brentq(surplus, low, high, xtol=1e-16, rtol=1e-15)
     return at_equilibrium(box, saturation, pressure(saturation))
 

@@ -1,4 +1,5 @@
 // Histories of explicit motion in columns one cell wide, as JSON, for the rows of tests/verification/explicit_motion.py.
+#include "materials/hydraulic/curves.hpp"
 #include "motion/explicit/explicit_mixture.hpp"
 #include "verification/explicit_cases.hpp"
 
@@ -160,6 +161,42 @@ ExplicitMixture<Filling::three_phase> column_with_gas(const Ground& ground, size
             air};
 }
 
+/// A closed column whose fluids exchange water and air, at 20 degrees, without weight.
+ExplicitMixture<Filling::exchange> closed_column(const Ground& ground, size_t cells, double gas_mobility,
+                                                 FreePoints points, const Hydraulics& soil,
+                                                 const ExplicitExchange& exchange) {
+    const double cell_size = ground.height / static_cast<double>(cells);
+    Walls walls = rollers(cell_size);
+    walls.top = {WallKind::roller, ground.height, 0};
+    const FluidExchange& fluids = exchange.fluids;
+    return {cell_size,
+            walls,
+            0,
+            {{ground.elastic}},
+            {{ground.grain_density, ground.mobility, 0, false, gas_mobility}},
+            {{soil, ground.bulk_modulus}},
+            {water_density, ground.bulk_modulus},
+            std::move(points),
+            1,
+            {fluids.atmosphere / fluids.air, fluids.atmosphere},
+            exchange};
+}
+
+struct WaterAndAir {
+    double water = 0, air = 0;  // kg per metre of thickness
+};
+
+WaterAndAir held(const FreePoints& points) {
+    WaterAndAir sum;
+    for (size_t p = 0; p < points.count; ++p) {
+        const double vapour = points[vapour_mass][p] + points[vapour_due][p];
+        const double dissolved = points[dissolved_mass][p] + points[dissolved_due][p];
+        sum.water += points[water_mass][p] + points[water_due][p] - dissolved + vapour;
+        sum.air += points[gas_mass][p] + points[gas_due][p] - vapour + dissolved;
+    }
+    return sum;
+}
+
 template <class Column>
 int64_t advance(Column& column, double duration) {
     const auto steps = static_cast<int64_t>(std::ceil(duration / column.critical_step()));
@@ -174,7 +211,7 @@ void gas_diffusion(size_t cells, double step, double mobility, const std::vector
     const Ground ground{1, 0.4, 2650, elasticity(2e8, 0.3), 1e-9, 1e7, 1e-3};
     constexpr double start = 101325;
     const ExplicitGas air{1.2041 * (start + step) / start, start + step};
-    FreePoints points = column_of_points(ground, cells, point_fields);
+    FreePoints points = column_of_points(ground, cells, gas_fields);
     fill_with_air(ground, air, -step, points);
     auto column = column_with_gas(ground, cells, 0, mobility, false, std::move(points), van_genuchten(1e-3, 2), air);
     std::puts("[");
@@ -199,7 +236,7 @@ void gas_wave(size_t cells, const std::array<double, 3>& motion, double alpha, d
               double gas_mobility, double duration) {
     const Ground ground{1, 0.4, 2650, elasticity(20e6, 0.3), liquid_mobility, 2e9, 0.8};
     const ExplicitGas air{1.2, 101325};
-    FreePoints points = column_of_points(ground, cells, point_fields);
+    FreePoints points = column_of_points(ground, cells, gas_fields);
     fill_with_air(ground, air, 0, points);
     const double number = std::numbers::pi / ground.height;
     const std::array<PointField, 3> velocity{velocity_y, liquid_velocity_y, gas_velocity_y};
@@ -281,7 +318,7 @@ void column_three_phase(size_t cells) {
     const double conductivity = 1e-4, gravity = 9.81, mobility = conductivity / (water_density * gravity);
     const Ground ground{1, 0.4, 3000, elasticity(2e7, 0.3), mobility, 1e7, 0.85};
     const ExplicitGas air{101325 * 0.02896 / (8.314 * 293.15), 101325};
-    FreePoints points = column_of_points(ground, cells, point_fields);
+    FreePoints points = column_of_points(ground, cells, gas_fields);
     fill_with_air(ground, air, 0, points);
     load_with_weight(ground, gravity, points);
     auto column = column_with_gas(ground, cells, gravity, mobility * 1e-3 / 1.8e-5, false, std::move(points),
@@ -320,6 +357,77 @@ void column_three_phase(size_t cells) {
     std::puts("]");
 }
 
+/// A closed box whose lower half is wetter than the upper one and under more pressure, all gas dry and all water without air: where it
+/// comes to rest.
+void exchange_box(size_t cells, double lower, double upper, double pressure, double alpha, double duration) {
+    const Ground ground{0.1, 0.4, 2650, elasticity(1e10, 0.3), 1e-6, 2e9, lower};
+    const ExplicitExchange exchange{fluid_exchange(1.2041, 101325, 293.15, 7.8e-6)};
+    FreePoints points = column_of_points(ground, cells, point_fields);
+    for (size_t p = 0; p < points.count; ++p) {
+        const bool is_low = points[position_y][p] < 0.5 * ground.height;
+        const double pores = ground.porosity * points[point_volume][p], filled = is_low ? lower : upper;
+        const FluidExchange& fluids = exchange.fluids;
+        points[water_mass][p] = water_density * filled * pores;
+        points[gas_mass][p] = (fluids.atmosphere + (is_low ? pressure : 0)) / fluids.air * (1 - filled) * pores;
+    }
+    const WaterAndAir before = held(points);
+    auto column = closed_column(ground, cells, 1e-6, std::move(points), van_genuchten(alpha, 1.5), exchange);
+    const int64_t steps = advance(column, duration);
+    const WaterAndAir after = held(column.points());
+    std::printf("{\"steps\": %lld, \"water_missed\": %.17g, \"air_missed\": %.17g,\n", static_cast<long long>(steps),
+                (after.water - before.water) / before.water, (after.air - before.air) / before.air);
+    std::vector<double> saturation, gas_pressure, vapour, dissolved;
+    for (const size_t p : upwards(column)) {
+        saturation.push_back(column.saturation(p));
+        gas_pressure.push_back(column.gas_pressure(p));
+        vapour.push_back(column.relative_humidity(p) * exchange.fluids.saturated_vapour);
+        dissolved.push_back(column.dissolved_air(p));
+    }
+    print("saturation", saturation, ",");
+    print("gas_pressure", gas_pressure, ",");
+    print("vapour", vapour, ",");
+    print("dissolved", dissolved, "}");
+}
+
+/// Vapour that spreads along a closed column whose lower half is moister than the upper one, through gas of one pressure: profiles of the
+/// relative humidity. `saturation`: of the liquid, which does not flow, at `humidity`; 0: there is none.
+void vapour_diffusion(size_t cells, double lower, double upper, const Hydraulics& soil, double diffusivity,
+                      const std::vector<double>& times) {
+    const Ground ground{0.1, 0.4, 2650, elasticity(1e7, 0.3), 1e-30, 1e7, 0};
+    ExplicitExchange exchange{fluid_exchange(1.2041, 101325, 293.15, 7.8e-6)};
+    exchange.vapour_diffusivity = diffusivity;
+    const FluidExchange& fluids = exchange.fluids;
+    FreePoints points = column_of_points(ground, cells, point_fields);
+    for (size_t p = 0; p < points.count; ++p) {
+        const double humidity = points[position_y][p] < 0.5 * ground.height ? lower : upper;
+        const double suction = -std::log(humidity) * fluids.liquid_density * fluids.vapour;
+        const double wet = saturation(soil.retention, suction), pores = ground.porosity * points[point_volume][p];
+        const double vapour = humidity * fluids.saturated_vapour;
+        points[water_mass][p] = water_density * wet * pores;
+        points[vapour_mass][p] = vapour * (1 - wet) * pores;
+        points[gas_mass][p] =
+            points[vapour_mass][p] + (fluids.atmosphere - fluids.vapour * vapour) / fluids.air * (1 - wet) * pores;
+    }
+    auto column = closed_column(ground, cells, 3e-7, std::move(points), soil, exchange);
+    std::puts("[");
+    double now = 0;
+    for (const double time : times) {
+        advance(column, time - now);
+        now = time;
+        std::vector<double> height, humidity, gas_pressure;
+        for (const size_t p : upwards(column)) {
+            height.push_back(column.points()[position_y][p]);
+            humidity.push_back(column.relative_humidity(p));
+            gas_pressure.push_back(column.gas_pressure(p));
+        }
+        std::printf("{\"time\": %.17g,\n", time);
+        print("height", height, ",");
+        print("gas_pressure", gas_pressure, ",");
+        print("humidity", humidity, time == times.back() ? "}" : "},");
+    }
+    std::puts("]");
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -342,6 +450,15 @@ int main(int count, char** arguments) {
         std::array<double, 7> number{};
         for (size_t i = 0; i < number.size(); ++i) number[i] = std::atof(arguments[i + 3]);
         gas_wave(cells, {number[0], number[1], number[2]}, number[3], number[4], number[5], number[6]);
+    } else if (name == "exchange_box" && count == 8) {
+        exchange_box(cells, std::atof(arguments[3]), std::atof(arguments[4]), std::atof(arguments[5]),
+                     std::atof(arguments[6]), std::atof(arguments[7]));
+    } else if (name == "vapour_diffusion" && count > 8) {
+        std::vector<double> times;
+        for (int i = 8; i < count; ++i) times.push_back(std::atof(arguments[i]));
+        vapour_diffusion(cells, std::atof(arguments[3]), std::atof(arguments[4]),
+                         van_genuchten(std::atof(arguments[5]), std::atof(arguments[6])), std::atof(arguments[7]),
+                         times);
     } else {
         std::fputs(
             "usage: explicit_histories saturated_wave|column_explicit|column_three_phase CELLS\n"

@@ -167,7 +167,7 @@ typedef struct talus_step_report {
     double water_rain;                 /* fallen on the ground surface */
     double water_infiltrated;          /* taken by the ground surface, what ponds on it included */
     double water_run_off;              /* rain that the ground surface did not take */
-    double water_seepage;              /* come out of the ground surface */
+    double water_seepage;              /* come out of the ground surface, as vapour too */
     double water_inflow;               /* come in through the other boundaries */
     double water_drained;              /* gone out through the other boundaries */
     double water_stored;               /* in the pores and ponded, now */

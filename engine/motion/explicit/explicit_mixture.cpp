@@ -1,5 +1,7 @@
 #include "motion/explicit/explicit_mixture.hpp"
 
+#include "motion/explicit/fluid_gifts.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,58 +29,9 @@ void add_apparent_cohesion(const std::vector<ExplicitHydraulics>& hydraulics, co
 
 /// Air in pores that it left is never thinner than this share of the atmosphere.
 constexpr double least_gas_pressure = 1e-6;
-constexpr double least_room_share = 1e-6;        // of the pores: no point counts less as room for gas
-constexpr double least_gas_permeability = 1e-9;  // where no gas is left, so that nodes may divide by it
+constexpr double least_room_share = 1e-6;  // of the pores: no point counts less as room for gas
 
 using LogValues = Eigen::Map<Eigen::Array<double, block_size, 1>>;  // logarithms of a block at once
-
-/// What a point adds to the nodes' sums: with the splines' slope along x and along y, and with their value.
-struct FluidGift {
-    Quad along_x = Quad::Zero(), along_y = Quad::Zero(), value = Quad::Zero();
-};
-using FluidGiftBlock = std::array<FluidGift, block_size>;
-
-void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
-                const BlockValues& pressure, const BlockValues& flow_mean, const BlockValues& edge_mean,
-                FluidGiftBlock& gift) {
-    for (size_t k = 0; k < count; ++k) {
-        const double whole = pressure[k] + unit_weight * y[k];
-        const double push = volume[k] * whole;
-        gift[k].along_x[0] = gift[k].along_y[1] = push;
-        gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
-        gift[k].value[0] = mass[k] * whole;
-        gift[k].value[1] = mass[k] * flow_mean[k];
-        gift[k].value[2] = volume[k];
-        gift[k].value[3] = mass[k] * edge_mean[k];
-    }
-}
-
-void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline, const FluidGiftBlock& gift,
-                       std::vector<NodeGradients>& gradients) {
-    NodePatch<Quad, true> patch(&gradients.data()->push_x, grid, spline.first[0]);
-    for (size_t k = 0; k < count; ++k) {
-        patch.move_to(spline.first[k]);
-        for (size_t j = 0; j < 3; ++j) {
-            const Quad by_slope = spline.value_y[j][k] * gift[k].along_x,
-                       by_value = spline.slope_y[j][k] * gift[k].along_y;
-            for (size_t i = 0; i < 3; ++i)
-                patch.node[j][i] += spline.slope_x[i][k] * by_slope + spline.value_x[i][k] * by_value;
-        }
-    }
-}
-
-template <class Means>
-void scatter_means(const Grid& grid, size_t count, const SplineBlock& spline, const FluidGiftBlock& gift,
-                   std::vector<Means>& means) {
-    NodePatch<Quad, true> patch(&means.data()->push, grid, spline.first[0]);
-    for (size_t k = 0; k < count; ++k) {
-        patch.move_to(spline.first[k]);
-        for (size_t j = 0; j < 3; ++j) {
-            const Quad row = spline.value_y[j][k] * gift[k].value;
-            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += spline.value_x[i][k] * row;
-        }
-    }
-}
 
 }  // namespace
 
@@ -86,7 +39,8 @@ template <Filling filling>
 ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, double gravity,
                                           std::vector<ExplicitSoil> soils, std::vector<ExplicitHydraulics> hydraulics,
                                           std::vector<SaturationTable> tables, const ExplicitWater& water,
-                                          FreePoints points, int32_t threads, const ExplicitGas& gas)
+                                          FreePoints points, int32_t threads, const ExplicitGas& gas,
+                                          [[maybe_unused]] const ExplicitExchange& exchange)
     : soils_(std::move(soils)),
       hydraulics_(std::move(hydraulics)),
       tables_(std::move(tables)),
@@ -101,6 +55,7 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
     nodes_.gravity = gravity;
     nodes_.liquid_density = water.density;
     nodes_.gas.density = gas.density;
+    if constexpr (exchanges) set_exchange(exchange);
     nodes_.least_mass = points_.least(solid_mass);
     nodes_.evens = filling != Filling::saturated;
     restart();
@@ -114,6 +69,8 @@ void ExplicitMixture<filling>::restart() {
     std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
     std::fill(nodes_.gas.returned.begin(), nodes_.gas.returned.end(), 0.0);
     nodes_.rained = nodes_.run_off = nodes_.seepage = nodes_.gas.escaped = 0;
+    nodes_.solutes.evaporated = 0;
+    std::fill(nodes_.solutes.returned.begin(), nodes_.solutes.returned.end(), SoluteReturn{});
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
@@ -160,6 +117,10 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
         std::copy_n(points_[water_due] + first, count, fluids.pressure.begin());
         std::copy_n(points_[gas_due] + first, count, fluids.gas_pressure.begin());
         find_potential(first, count, fluids);
+        if constexpr (exchanges) {
+            even_out_solutes(first, count, spline, dt, fluids, keeps ? dissolved_due : dissolved_mass,
+                             keeps ? vapour_due : vapour_mass);
+        }
         gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
         for (size_t k = 0; k < count; ++k)
             pass(gas_mass, gas_due, k,
@@ -193,6 +154,7 @@ void ExplicitMixture<filling>::owe_water(Strip strip) {
         gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
         for (size_t k = 0; k < count; ++k)
             points_[water_due][first + k] += nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
+        if constexpr (exchanges) add_solutes(first, count, spline, dissolved_due, vapour_due);
         if constexpr (has_gas) {
             BlockValues weight;
             find_gas_weights(first, count, weight);
@@ -225,7 +187,8 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
             fluids.effective_saturation[k] = std::clamp(table.effective(filled), 0.0, 1.0);
         }
     }
-    if constexpr (has_gas) share_pores(first, count, fluids);
+    if constexpr (filling == Filling::three_phase) share_pores(first, count, fluids);
+    if constexpr (exchanges) find_partitions(first, count, fluids);
 }
 
 /// Water and gas of a block of points, from their masses.
@@ -263,7 +226,6 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
         fluids.saturation[k] = 1 - found.gas_share;
         fluids.effective_saturation[k] = std::clamp(table.effective(fluids.saturation[k]), 0.0, 1.0);
     }
-    find_potential(first, count, fluids);
 }
 
 /// psi and the volume of the gas, as of gas that is never thinner than next to none.
@@ -280,6 +242,11 @@ void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidB
         const double relative = std::max(1 + per_atmosphere * pressure[k], least_gas_pressure);
         volume[k] = mass[k] / (density * relative);
         potential[k] = relative;
+    }
+    if constexpr (exchanges) {  // vapour is lighter
+        const double lighter = exchange_.vapour / exchange_.air - 1;
+        for (size_t k = 0; k < count; ++k)
+            volume[k] += lighter * points_[vapour_mass][first + k] / (density * potential[k]);
     }
     LogValues logarithm(potential);
     logarithm = logarithm.log();
@@ -330,9 +297,11 @@ void ExplicitMixture<filling>::push_gas(size_t first, size_t count, const Spline
         gift[k].along_x[2] = gift[k].along_y[3] = gift[k].value[2] = volume;
         gift[k].value[1] = points_[solid_mass][first + k] * fluids.gas_mobility[k];
         gift[k].value[3] = points_[gas_mass][first + k];
+        if constexpr (exchanges)  // as of air: Darcy's law is of the pressure, psi that of air
+            gift[k].value[3] = volume * (gas_.atmosphere + fluids.gas_pressure[k]) / exchange_.air;
     }
-    scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gas.gradients);
-    scatter_means(nodes_.grid, count, spline, gift, nodes_.gas.means);
+    scatter_gradients(nodes_.grid, count, spline, gift, &nodes_.gas.gradients.data()->push_x);
+    scatter_means(nodes_.grid, count, spline, gift, &nodes_.gas.means.data()->push);
 }
 
 template <Filling filling>
@@ -357,6 +326,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         const double* mass = points_[solid_mass] + first;
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
         gather_gradient(nodes_.grid, nodes_.velocity, count, spline, gradient);
+        if constexpr (exchanges) take_solutes(first, count, spline);
         if constexpr (has_gas) {
             VelocityBlock gas_rates;
             gather_pairs(nodes_.grid, nodes_.gas.both_rates, count, spline, rates, gas_rates);
@@ -372,6 +342,8 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         set_elasticity(soils_, points_, first, count, material);
         strain_elastically(points_, first, count, dt, gradient, material);
         find_fluids(first, count, fluids);
+        if constexpr (exchanges) settle(first, count, fluids);
+        if constexpr (has_gas) find_potential(first, count, fluids);
         if (yields_) {
             set_strength(soils_, points_, first, count, nodes_.grid.cell_size, material);
             if constexpr (filling != Filling::saturated)
@@ -391,8 +363,9 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         fill_gifts(count, y, volume, mass, nodes_.gravity * water_.density, fluids.pressure,
                    has_gas ? fluids.mobility : fluids.permeability, has_gas ? fluids.edge_mobility : fluids.resistance,
                    gift);
-        scatter_gradients(nodes_.grid, count, spline, gift, nodes_.gradients);
-        scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
+        scatter_gradients(nodes_.grid, count, spline, gift, &nodes_.gradients.data()->push_x);
+        scatter_means(nodes_.grid, count, spline, gift, &nodes_.means.data()->push);
+        if constexpr (exchanges) push_solutes(first, count, spline, fluids);
         if constexpr (has_gas) {
             push_gas(first, count, spline, fluids);
             keep_pressures(first, count, fluids);
@@ -410,6 +383,7 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
     GiftBlock gift, liquid_gift;
     [[maybe_unused]] GiftBlock gas_gift;
     [[maybe_unused]] FluidBlock fluids;
+    [[maybe_unused]] BlockValues dissolved_outflow, vapour_outflow;
     for (size_t first = strip.first; first < strip.last; first += block_size) {
         const size_t count = std::min(block_size, strip.last - first);
         const Grid& grid = nodes_.grid;
@@ -432,6 +406,10 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
                                    {points_[water_mass] + first, points_[gas_mass] + first},
                                    {liquid_fields, {gas_velocity_x, gas_affine_xx}}, {&liquid_gift, &gas_gift});
             for (size_t k = 0; k < count; ++k) gas_gift[k].own[3] = -fluids.gas_volume[k] * gas_outflow[k];
+            if constexpr (exchanges) {
+                gather_divergences(grid, nodes_.solutes.fluxes, count, spline, dissolved_outflow, vapour_outflow);
+                for (size_t k = 0; k < count; ++k) vapour_outflow[k] *= fluids.gas_volume[k];
+            }
         } else {
             gather_divergence(grid, nodes_.flux, count, spline, outflow);
             take_velocity<keeps>(grid, nodes_.liquid_velocity, points_, first, count, spline,
@@ -447,6 +425,7 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         give_momentum(grid, count, spline, gift, nodes_.momentum);
         give_momentum(grid, count, spline, liquid_gift, nodes_.liquid_momentum);
         if constexpr (has_gas) give_gas(first, count, spline, gas_gift);
+        if constexpr (exchanges) give_solutes(first, count, spline, dissolved_outflow, vapour_outflow);
     }
 }
 
@@ -479,8 +458,9 @@ void ExplicitMixture<filling>::give(Strip strip) {
 
 /// Nothing comes back to the points from nodes that they have left: it is out of the ground.
 template <Filling filling>
-void ExplicitMixture<filling>::forget_left_nodes(std::vector<double>& returned) const {
-    std::vector<double> kept(returned.size(), 0.0);
+template <class Returned>
+void ExplicitMixture<filling>::forget_left_nodes(std::vector<Returned>& returned) const {
+    std::vector<Returned> kept(returned.size());
     nodes_.for_each_node([&](size_t i) { kept[i] = returned[i]; });
     returned = std::move(kept);
 }
@@ -490,6 +470,10 @@ void ExplicitMixture<filling>::move_gas_nodes(const Grid& old) {
     NodeGas& gas = nodes_.gas;
     for (auto* field : {&gas.velocities, &gas.fluxes, &gas.evenings}) move_nodes(*field, old, nodes_.grid);
     move_nodes(gas.returned, old, nodes_.grid);
+    if constexpr (!exchanges) return;
+    NodeSolutes& solutes = nodes_.solutes;
+    for (auto* field : {&solutes.fluxes, &solutes.evenings, &solutes.mixings}) move_nodes(*field, old, nodes_.grid);
+    move_nodes(solutes.returned, old, nodes_.grid);
 }
 
 template <Filling filling>
@@ -498,9 +482,14 @@ void ExplicitMixture<filling>::arrange_points() {
     forget_left_nodes(nodes_.returned);
     const double returned = nodes_.total(nodes_.returned);
     double gas_returned = 0;
+    [[maybe_unused]] SoluteReturn solutes_returned;
     if constexpr (has_gas) {
         forget_left_nodes(nodes_.gas.returned);
         gas_returned = nodes_.total(nodes_.gas.returned);
+    }
+    if constexpr (exchanges) {
+        forget_left_nodes(nodes_.solutes.returned);
+        solutes_returned = nodes_.returned_solutes();
     }
     if (arrangement_.arrange(points_, nodes_.grid)) {
         for (auto* field : {&nodes_.velocity, &nodes_.liquid_velocity, &nodes_.flux, &nodes_.rates, &nodes_.evening})
@@ -512,6 +501,10 @@ void ExplicitMixture<filling>::arrange_points() {
     nodes_.spans = arrangement_.spans();
     nodes_.seepage += nodes_.flow_time * (returned - nodes_.total(nodes_.returned));
     if constexpr (has_gas) nodes_.gas.escaped += nodes_.flow_time * (gas_returned - nodes_.total(nodes_.gas.returned));
+    if constexpr (exchanges) {
+        const SoluteReturn left = nodes_.returned_solutes();
+        nodes_.lose({solutes_returned.dissolved - left.dissolved, solutes_returned.vapour - left.vapour});
+    }
     fall_rain();
     find_wave_speed();
 }
@@ -554,8 +547,17 @@ typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_
             std::max(bulk_modulus / water_.density, std::min(stiffness / water_.density, creep * creep))};
 }
 
-/// Of the points as they are: the square root of the sum of the waves' squares without drag, which bounds each. The gas's own is R T / M at
-/// any pressure, and less where the water gives way.
+/// Of the gas's own wave, m2/s2: R T / M at any pressure, and less where the water gives way. An open edge stretches the gas's push: without drag, only
+/// steps of 0.6 of what the wave asks for are stable there; drag adds to the square of that its (step / 2) n / (lambda_g rho_g)-fold.
+template <Filling filling>
+double ExplicitMixture<filling>::gas_speed_squared(size_t p, double porosity) const {
+    const double own = gas_.atmosphere / gas_.density;
+    const double mobility = hydraulics_[static_cast<size_t>(points_.soil[p])].gas_mobility;
+    const double creep = 8 * gas_.atmosphere * mobility / (porosity * nodes_.grid.cell_size);
+    return std::clamp(creep * creep, own, 4 * own);
+}
+
+/// Of the points as they are: the square root of the sum of the waves' squares without drag, which bounds each.
 template <Filling filling>
 void ExplicitMixture<filling>::find_wave_speed() {
     wave_speed_ = 0;
@@ -567,7 +569,7 @@ void ExplicitMixture<filling>::find_wave_speed() {
         const PoreStiffness pores = pore_stiffness(p, 1 - grains);
         const double fluid = pores.borne / (1 - grains);
         double squares = (frame + grains * grains * fluid) / solid_density + pores.flow_speed_squared;
-        if constexpr (has_gas) squares += gas_.atmosphere / gas_.density;
+        if constexpr (has_gas) squares += gas_speed_squared(p, 1 - grains);
         wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
     }
 }
@@ -640,5 +642,6 @@ double ExplicitMixture<filling>::saturation(size_t point) const {
 template class ExplicitMixture<Filling::saturated>;
 template class ExplicitMixture<Filling::unsaturated>;
 template class ExplicitMixture<Filling::three_phase>;
+template class ExplicitMixture<Filling::exchange>;
 
 }  // namespace talus

@@ -5,6 +5,7 @@
 // the points is a mean over the nodes' surroundings, so that nearly incompressible water does not lock the ground.
 #pragma once
 
+#include "materials/hydraulic/fluid_exchange.hpp"
 #include "materials/hydraulic/saturation_table.hpp"
 #include "materials/hydraulic/shared_pores.hpp"
 #include "motion/explicit/arrangement.hpp"
@@ -45,16 +46,27 @@ struct ExplicitGas {
     double atmosphere = 101325;  ///< Pa, absolute
 };
 
-/// Saturated: every pore is full of water at all times. Unsaturated: the gas is at rest at zero pressure. Three phases: it moves.
-enum class Filling { saturated, unsaturated, three_phase };
+/// Vapour and dissolved air, always in equilibrium with water and air. The defaults: at 20 degrees.
+struct ExplicitExchange {
+    FluidExchange fluids{};
+    double vapour_diffusivity = 2.4e-5;  ///< in air, m2/s
+    double air_diffusivity = 2e-9;       ///< in water, m2/s
+    double humidity = 1;                 ///< of the atmosphere, relative
+};
+
+/// Saturated: every pore is full of water at all times. Unsaturated: the gas is at rest at zero pressure. Three phases: it moves. Exchange: it moves,
+/// water evaporates into it and air dissolves in the water.
+enum class Filling { saturated, unsaturated, three_phase, exchange };
 
 template <Filling filling>
 class ExplicitMixture {
 public:
-    /// The points' fields up to liquid_affine_yy must be sized, with three phases all. `tables`: one a soil, none where saturated.
+    /// The points' fields up to liquid_affine_yy must be sized, with three phases those up to gas_affine_yy, with exchange all. `tables`: one a soil,
+    /// none where saturated.
     ExplicitMixture(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
                     std::vector<ExplicitHydraulics> hydraulics, std::vector<SaturationTable> tables,
-                    const ExplicitWater& water, FreePoints points, int32_t threads, const ExplicitGas& gas = {});
+                    const ExplicitWater& water, FreePoints points, int32_t threads, const ExplicitGas& gas = {},
+                    const ExplicitExchange& exchange = {});
 
     /// As ExplicitMotion's. The water of the ground is the points' own and what is due to them.
     bool step(double dt, bool is_last);
@@ -70,12 +82,16 @@ public:
     void set_immersed(bool immersed) { nodes_.immersed = immersed; }
     [[nodiscard]] double seepage() const { return nodes_.seepage; }  ///< kg
 
-    [[nodiscard]] double gas_escaped() const { return nodes_.gas.escaped; }  ///< kg, since restart()
+    /// kg, since restart(); with exchange of air alone, that of the water too.
+    [[nodiscard]] double gas_escaped() const { return nodes_.gas.escaped; }
+    [[nodiscard]] double evaporated() const { return nodes_.solutes.evaporated; }  ///< through the surface, kg
 
     /// Pressure of a point's water, Pa.
     [[nodiscard]] double pressure(size_t point) const;
     [[nodiscard]] double gas_pressure(size_t point) const;  ///< Pa; 0: at rest
     [[nodiscard]] double saturation(size_t point) const;
+    [[nodiscard]] double relative_humidity(size_t point) const;  ///< with exchange alone
+    [[nodiscard]] double dissolved_air(size_t point) const;      ///< kg per m3 of water; likewise
     /// What the points' stress is short of the total one, Pa.
     [[nodiscard]] double pore_stress(size_t point) const;
 
@@ -84,12 +100,14 @@ public:
     [[nodiscard]] const Grid& grid() const { return nodes_.grid; }
 
 private:
-    static constexpr bool has_gas = filling == Filling::three_phase;
+    static constexpr bool exchanges = filling == Filling::exchange;
+    static constexpr bool has_gas = filling == Filling::three_phase || exchanges;
 
     struct FluidBlock {
         BlockValues pressure, permeability, resistance, suction, effective_saturation;  // of the water
         BlockValues mobility, edge_mobility, saturation, gas_pressure, gas_potential, gas_mobility,
-            gas_volume;  // where gas moves
+            gas_volume;                 // where gas moves
+        BlockValues vapour, dissolved;  // kg per metre of thickness, where fluids exchange them
     };
 
     struct PoreStiffness {
@@ -97,6 +115,8 @@ private:
         double flow_speed_squared;  // m2/s2, of the liquid through the skeleton
     };
     [[nodiscard]] PoreStiffness pore_stiffness(size_t p, double porosity) const;
+
+    [[nodiscard]] double gas_speed_squared(size_t p, double porosity) const;
 
     void arrange_points();
     /// Of the pores, by the point's water; above 1 it is pressed together.
@@ -117,10 +137,22 @@ private:
     void share_pores(size_t first, size_t count, FluidBlock& fluids) const;
     void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
     void keep_pressures(size_t first, size_t count, const FluidBlock& fluids);
+    void set_exchange(const ExplicitExchange& exchange);
+    void find_partitions(size_t first, size_t count, FluidBlock& fluids) const;
+    [[nodiscard]] Partition partition_of(size_t p) const;
+    void settle(size_t first, size_t count, const FluidBlock& fluids);
+    void push_solutes(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
+    void add_solutes(size_t first, size_t count, const SplineBlock& spline, PointField dissolved, PointField vapour);
+    void take_solutes(size_t first, size_t count, const SplineBlock& spline);
+    void even_out_solutes(size_t first, size_t count, const SplineBlock& spline, double dt, const FluidBlock& fluids,
+                          PointField dissolved, PointField vapour);
+    void give_solutes(size_t first, size_t count, const SplineBlock& spline, const BlockValues& dissolved_outflow,
+                      const BlockValues& vapour_outflow);
     void take_gas(size_t first, size_t count, const VelocityBlock& rates);
     void push_gas(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
     void give_gas(size_t first, size_t count, const SplineBlock& spline, const GiftBlock& gift);
-    void forget_left_nodes(std::vector<double>& returned) const;
+    template <class Returned>
+    void forget_left_nodes(std::vector<Returned>& returned) const;
     void move_gas_nodes(const Grid& old);
     void stress_and_forces(Strip strip, double dt);
     template <bool keeps>
@@ -134,7 +166,8 @@ private:
     ExplicitWater water_;
     FreePoints points_;
     ExplicitGas gas_;
-    GridMixture<has_gas> nodes_;
+    FluidExchange exchange_;
+    GridMixture<has_gas, exchanges> nodes_;
     Arrangement arrangement_;
     bool restarted_ = false;  // and the points not yet got what is due
     bool yields_ = false;     // any soil
@@ -142,8 +175,39 @@ private:
     double wave_speed_ = 0;  // m/s, the fastest when the points were arranged or looked at, were all pores full
 };
 
+// explicit_solutes.cpp
+template <>
+void ExplicitMixture<Filling::exchange>::set_exchange(const ExplicitExchange& exchange);
+template <>
+void ExplicitMixture<Filling::exchange>::find_partitions(size_t first, size_t count, FluidBlock& fluids) const;
+template <>
+Partition ExplicitMixture<Filling::exchange>::partition_of(size_t p) const;
+template <>
+double ExplicitMixture<Filling::exchange>::relative_humidity(size_t point) const;
+template <>
+double ExplicitMixture<Filling::exchange>::dissolved_air(size_t point) const;
+template <>
+void ExplicitMixture<Filling::exchange>::settle(size_t first, size_t count, const FluidBlock& fluids);
+template <>
+void ExplicitMixture<Filling::exchange>::push_solutes(size_t first, size_t count, const SplineBlock& spline,
+                                                      const FluidBlock& fluids);
+template <>
+void ExplicitMixture<Filling::exchange>::add_solutes(size_t first, size_t count, const SplineBlock& spline,
+                                                     PointField dissolved, PointField vapour);
+template <>
+void ExplicitMixture<Filling::exchange>::take_solutes(size_t first, size_t count, const SplineBlock& spline);
+template <>
+void ExplicitMixture<Filling::exchange>::even_out_solutes(size_t first, size_t count, const SplineBlock& spline,
+                                                          double dt, const FluidBlock& fluids, PointField dissolved,
+                                                          PointField vapour);
+template <>
+void ExplicitMixture<Filling::exchange>::give_solutes(size_t first, size_t count, const SplineBlock& spline,
+                                                      const BlockValues& dissolved_outflow,
+                                                      const BlockValues& vapour_outflow);
+
 extern template class ExplicitMixture<Filling::saturated>;
 extern template class ExplicitMixture<Filling::unsaturated>;
 extern template class ExplicitMixture<Filling::three_phase>;
+extern template class ExplicitMixture<Filling::exchange>;
 
 }  // namespace talus

@@ -8,15 +8,6 @@ namespace {
 
 constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is at the ground's edge
 
-/// Nodes do not see what one point of a cell has too much and its neighbour too little: it would grow by chance from step to step, until the
-/// pressure of the fuller one counts (docs/verification.md). Points pass on to each other what Darcy's law lets pass between the halves of a cell.
-/// Of smooth fields, the nodes' means seen by points again differ from the points' own by this many squares of a cell times the Laplacian: twice half
-/// of the splines' second moment. As much of Darcy's flow does evening them out pass on already.
-constexpr double smoothing = 0.25;
-
-/// Gas that fills less than this share of the ground moves with the solid, as by a drag beyond all others.
-constexpr double least_gas_share = 1e-6, locked = 1e30;
-
 /// Gas is never thinner than this share of the atmosphere where a density is divided by.
 constexpr double least_density_share = 1e-6;
 
@@ -41,8 +32,6 @@ void add(NodeMeansBesideGas& inside, const NodeMeansBesideGas& beyond) {
     inside.edge_mobility += beyond.edge_mobility;
 }
 
-double dot(const NodeVector& a, const NodeVector& b) { return a.x * b.x + a.y * b.y; }
-
 }  // namespace
 
 void NodeGas::clear_flow(size_t node) {
@@ -64,8 +53,8 @@ void NodeGas::resize(size_t nodes) {
     for (auto* field : {&velocities, &fluxes, &evenings, &both_rates}) field->resize(nodes);
 }
 
-template <bool has_gas>
-void GridMixture<has_gas>::resize() {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::resize() {
     const size_t nodes = grid.nodes();
     momentum.assign(nodes, {});
     liquid_momentum.assign(nodes, {});
@@ -80,10 +69,11 @@ void GridMixture<has_gas>::resize() {
     flux.resize(nodes);
     rates.resize(nodes);
     if constexpr (has_gas) gas.resize(nodes);
+    if constexpr (exchanges) solutes.resize(nodes);
 }
 
-template <bool has_gas>
-void GridMixture<has_gas>::begin_step() {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::begin_step() {
     for_each_node([this](size_t i) {
         force[i] = {0, -gravity * (momentum[i].mass + liquid_momentum[i].mass)};
         gradients[i] = {};
@@ -92,6 +82,10 @@ void GridMixture<has_gas>::begin_step() {
             force[i].y -= gravity * gas.momentum[i].mass;
             gas.gradients[i] = {};
             gas.means[i] = {};
+        }
+        if constexpr (exchanges) {
+            solutes.gradients[i] = {};
+            solutes.means[i] = {};
         }
     });
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
@@ -106,6 +100,7 @@ void GridMixture<has_gas>::begin_step() {
             gas.weight[nodes.inside] += gas.weight[nodes.beyond];  // what is left beyond nobody reads
         }
     });
+    if constexpr (exchanges) fold_solutes();
     SpeedBound bound(least_mass);
     for_each_node([this, &bound](size_t i) {
         const NodeMomentum &solid = momentum[i], &liquid = liquid_momentum[i];
@@ -132,16 +127,18 @@ void GridMixture<has_gas>::begin_step() {
         }
     });
     start_speed = bound.value();
+    if constexpr (exchanges) find_solute_rates();
     mirror();
     if constexpr (has_gas) for_each_node([this](size_t i) { gas.both_rates[i] = {rates[i], gas.rates[i]}; });
 }
 
-template <bool has_gas>
-void GridMixture<has_gas>::end_step(double dt) {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::end_step(double dt) {
     fold_forces();
     find_surface_widths();
     for_each_node([this, dt](size_t i) { solve(i, dt); });
     if (!immersed) cross_surface(dt);
+    if constexpr (exchanges) carry_solutes(dt);
     mirror();
     if constexpr (has_gas) {
         for_each_node([this](size_t i) {
@@ -160,12 +157,13 @@ void GridMixture<has_gas>::end_step(double dt) {
             gas.momentum[i] = {};
             gas.weight[i] = 0;
         }
+        if constexpr (exchanges) solutes.gains[i] = {};
     });
     speed = bound.value();
 }
 
-template <bool has_gas>
-void GridMixture<has_gas>::fold_forces() {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::fold_forces() {
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
         add_mirrored(force[nodes.inside], mirror, force[nodes.beyond]);
     });
@@ -185,35 +183,36 @@ void GridMixture<has_gas>::fold_forces() {
             gas_in.mass += gas_out.mass;
         }
     });
+    if constexpr (exchanges) fold_solute_means();
 }
 
-template <bool has_gas>
-bool GridMixture<has_gas>::is_at_edge(size_t node) const {
+template <bool has_gas, bool exchanges>
+bool GridMixture<has_gas, exchanges>::is_at_edge(size_t node) const {
     return means[node].volume > 0 && means[node].volume < full_share * cell_volume();
 }
 
-template <bool has_gas>
-double GridMixture<has_gas>::total(const std::vector<double>& values) const {
+template <bool has_gas, bool exchanges>
+double GridMixture<has_gas, exchanges>::total(const std::vector<double>& values) const {
     double sum = 0;
     for_each_node([&](size_t i) { sum += values[i]; });
     return sum;
 }
 
-template <bool has_gas>
-double GridMixture<has_gas>::facing_up(size_t node) const {
+template <bool has_gas, bool exchanges>
+double GridMixture<has_gas, exchanges>::facing_up(size_t node) const {
     return is_at_edge(node) ? std::max(gradients[node].edge_y, 0.0) : 0.0;
 }
 
-template <bool has_gas>
-void GridMixture<has_gas>::find_surface_widths() {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::find_surface_widths() {
     const auto columns = static_cast<size_t>(grid.cells[0]);
     surfaces_.assign(columns, {});
     for_each_node([&](size_t i) { surfaces_[i % columns].width += facing_up(i); });
 }
 
 /// Rain on a node, kg/s.
-template <bool has_gas>
-double GridMixture<has_gas>::falls_on(size_t node) const {
+template <bool has_gas, bool exchanges>
+double GridMixture<has_gas, exchanges>::falls_on(size_t node) const {
     const size_t column = node % static_cast<size_t>(grid.cells[0]);
     const double up = rain.empty() ? 0.0 : facing_up(node);
     return up > 0 ? rain[column] * grid.cell_size * up / surfaces_[column].width : 0.0;
@@ -221,8 +220,8 @@ double GridMixture<has_gas>::falls_on(size_t node) const {
 
 /// Every column's rain falls on its nodes at the edge in proportion to the edge's horizontal width there. What one of them cannot take, or
 /// gives back, is offered to the others. What none takes leaves: within the column's own rain it is run-off, the rest seepage.
-template <bool has_gas>
-void GridMixture<has_gas>::cross_surface(double dt) {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::cross_surface(double dt) {
     const auto columns = static_cast<size_t>(grid.cells[0]);
     const auto takes = [&](size_t i) { return std::min(falls_on(i), capacity[i]); };
     for_each_node([&](size_t i) {
@@ -251,8 +250,8 @@ void GridMixture<has_gas>::cross_surface(double dt) {
 }
 
 /// How the gas at a node answers to forces.
-template <bool has_gas>
-GasAnswer GridMixture<has_gas>::answer_of_gas(size_t node, double dt) {
+template <bool has_gas, bool exchanges>
+GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt) {
     const double volume = means[node].volume, mass = gas.momentum[node].mass;
     const GasMeans& mean = gas.means[node];
     GasAnswer answer;
@@ -274,8 +273,8 @@ GasAnswer GridMixture<has_gas>::answer_of_gas(size_t node, double dt) {
     return answer;
 }
 
-template <bool has_gas>
-void GridMixture<has_gas>::solve(size_t node, double dt) {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
     const NodeGradients& sums = gradients[node];
     const Means& mean = means[node];
@@ -362,17 +361,25 @@ void GridMixture<has_gas>::solve(size_t node, double dt) {
     if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed);
 }
 
+/// Of what the edge can take, what rain offers; all where water comes out.
+template <bool has_gas, bool exchanges>
+double GridMixture<has_gas, exchanges>::wetted_share(size_t node) const {
+    const double offered = falls_on(node);
+    if (capacity[node] > offered) return offered / capacity[node];
+    return offered > 0 || capacity[node] < 0 ? 1.0 : 0.0;
+}
+
 /// The atmosphere draws gas in or out by the difference of psi over the distance to the edge, besides what the gas's momentum carries. k_rg on the way is
 /// the mean of the node's and the edge's: there it is less, as the suction is, by the share of what the edge can take that rain offers, and none
 /// where that is all.
-template <bool has_gas>
-void GridMixture<has_gas>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
-                                   const NodeVector& pushed) {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
+                                              const NodeVector& pushed) {
     if (!(answer.density > 0)) return;
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
     const double conductance = dt * answer.moved / volume, driven = conductance / volume - answer.evened;
-    const double wetted = capacity[node] > 0 ? std::min(falls_on(node) / capacity[node], 1.0) : 1.0;
-    const double outer_conductance = conductance * (1 + answer.drag) / (1 + answer.drag / (1 - 0.5 * wetted));
+    const double outer_conductance =
+        conductance * (1 + answer.drag) / (1 + answer.drag / (1 - 0.5 * wetted_share(node)));
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
     const double carried = dot(gas.flux[node], outwards) - driven * dot(edge.stretched(pushed), outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
@@ -383,8 +390,8 @@ void GridMixture<has_gas>::breathe(size_t node, double dt, const GroundEdge& edg
 }
 
 /// Beyond a wall the nodes move as the mirrored ground would; water slides along every wall.
-template <bool has_gas>
-void GridMixture<has_gas>::mirror() {
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::mirror() {
     for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
         velocity[nodes.beyond] = {mirror.x * velocity[nodes.inside].x, mirror.y * velocity[nodes.inside].y};
     });
@@ -400,9 +407,11 @@ void GridMixture<has_gas>::mirror() {
             gas.evening[nodes.beyond] = gas.evening[nodes.inside];
         }
     });
+    if constexpr (exchanges) mirror_solutes();
 }
 
 template struct GridMixture<false>;
 template struct GridMixture<true>;
+template struct GridMixture<true, true>;
 
 }  // namespace talus

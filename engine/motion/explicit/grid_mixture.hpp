@@ -18,12 +18,22 @@
 
 #include "motion/explicit/grid_motion.hpp"
 #include "motion/explicit/ground_edge.hpp"
+#include "motion/explicit/node_solutes.hpp"
 #include "motion/explicit/walled_grid.hpp"
 
 #include <type_traits>
 #include <vector>
 
 namespace talus {
+
+/// Nodes do not see what one point of a cell has too much and its neighbour too little: it would grow by chance from step to step, until the
+/// pressure of the fuller one counts (docs/verification.md). Points pass on to each other what Darcy's law lets pass between the halves of a cell.
+/// Of smooth fields, the nodes' means seen by points again differ from the points' own by this many squares of a cell times the Laplacian: twice half
+/// of the splines' second moment. As much of Darcy's flow does evening them out pass on already.
+inline constexpr double smoothing = 0.25;
+
+/// Gas that fills less than this share of the ground moves with the solid, as by a drag beyond all others.
+inline constexpr double least_gas_share = 1e-6, locked = 1e30;
 
 /// Sums over points with the gradients of the splines: N, and the edge's length times its normal, m.
 struct NodeGradients {
@@ -74,7 +84,7 @@ struct NodeGas {
         rates;  ///< x, gain that points share by weight, kg/(m2 s); y, loss that they share by their gas, 1/s
     std::vector<NodeVector> evening;  ///< of the points' psi: x, kg/s per weight and J/kg; y, times the node's
     double density = 0;               ///< at no gauge pressure, kg/m3
-    double escaped = 0;               ///< through the surface in the steps ended, kg
+    double escaped = 0;  ///< through the surface in the steps ended, kg; with exchange, air alone, in the liquid too
 
     void resize(size_t nodes);
     void clear_flow(size_t node);
@@ -101,7 +111,8 @@ struct OpenSurface {
     double room = 0;    ///< in nodes that could take more, kg/s
 };
 
-template <bool has_gas>
+/// `exchanges`: water evaporates into the gas, air dissolves in the liquid.
+template <bool has_gas, bool exchanges = false>
 struct GridMixture : WalledGrid {
     using Means = std::conditional_t<has_gas, NodeMeansBesideGas, NodeMeans>;
 
@@ -137,12 +148,16 @@ struct GridMixture : WalledGrid {
     double run_off = 0;            ///< kg, likewise
     double seepage = 0;            ///< kg, likewise; negative where an immersed ground drank
 
-    NodeGas gas;  ///< empty where it is at rest
+    NodeGas gas;          ///< empty where it is at rest
+    NodeSolutes solutes;  ///< empty where fluids exchange nothing
 
     void resize();
     void begin_step();
     void end_step(double dt);
     [[nodiscard]] double total(const std::vector<double>& values) const;  ///< over the nodes
+    [[nodiscard]] SoluteReturn returned_solutes() const;                  ///< over the nodes, kg/s
+    void lose(const SoluteReturn&
+                  rate);  ///< of water and gas counted as lost in the last step, so much is air and vapour, kg/s
 
 private:
     [[nodiscard]] bool is_at_edge(size_t node) const;
@@ -153,13 +168,42 @@ private:
     void cross_surface(double dt);
     [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
     void solve(size_t node, double dt);
+    [[nodiscard]] double wetted_share(size_t node) const;
     void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed);
     void mirror();
+    void fold_solutes();
+    void fold_solute_means();
+    void find_solute_rates();
+    void carry_solutes(double dt);
+    void carry_dissolved(size_t node, const GroundEdge& edge, double dt);
+    void carry_vapour(size_t node, const GroundEdge& edge, double dt);
+    void mirror_solutes();
 
     std::vector<OpenSurface> surfaces_;  // one a column
 };
 
+// grid_solutes.cpp
+template <>
+SoluteReturn GridMixture<true, true>::returned_solutes() const;
+template <>
+void GridMixture<true, true>::lose(const SoluteReturn& rate);
+template <>
+void GridMixture<true, true>::fold_solutes();
+template <>
+void GridMixture<true, true>::fold_solute_means();
+template <>
+void GridMixture<true, true>::find_solute_rates();
+template <>
+void GridMixture<true, true>::carry_solutes(double dt);
+template <>
+void GridMixture<true, true>::carry_dissolved(size_t node, const GroundEdge& edge, double dt);
+template <>
+void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, double dt);
+template <>
+void GridMixture<true, true>::mirror_solutes();
+
 extern template struct GridMixture<false>;
 extern template struct GridMixture<true>;
+extern template struct GridMixture<true, true>;
 
 }  // namespace talus

@@ -22,6 +22,8 @@ struct NodeVector {
     double x = 0, y = 0;
 };
 
+inline double dot(const NodeVector& a, const NodeVector& b) { return a.x * b.x + a.y * b.y; }
+
 /// Of two fluids, side by side: four numbers are one register.
 struct NodePairOfVectors {
     NodeVector liquid, gas;

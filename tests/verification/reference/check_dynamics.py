@@ -18,6 +18,7 @@ import elastic_bar  # noqa: E402
 import exchange_box  # noqa: E402
 import gas_diffusion  # noqa: E402
 import saturated_wave  # noqa: E402
+import vapour_diffusion  # noqa: E402
 import wave_by_leapfrog  # noqa: E402
 import wave_speeds  # noqa: E402
 
@@ -229,6 +230,48 @@ def check_box():
     yield "box: four equations at once", max(abs(all_at_once / numpy.array(dataclasses.astuple(rest)) - 1)), 1e-9
 
 
+def vapour_by_volumes(column, lower, upper, time, cells):
+    """Humidity in the cells, by the moles of vapour and air: what diffuses, and the flow N of all gas that keeps its pressure even.
+
+    d(water)/dt = -d/dy (J + x N),    d(water + air)/dt = -dN/dy,    J = -c (1 - S) D tau dx/dy
+    """
+    spacing = column.height / cells
+    gas = column.atmosphere / (vapour_diffusion.GAS_CONSTANT * column.temperature)  # mol/m3
+    per_humidity = column.saturated_pressure / column.atmosphere
+
+    def contents(humidity):
+        wet = column.saturation(humidity)
+        vapour = gas * (1 - wet) * humidity * per_humidity
+        return column.liquid_density / column.water_molar * wet + vapour, gas * (1 - wet) - vapour
+
+    def rate(now, humidity):
+        step = 1e-6 * humidity
+        water, air = (numpy.subtract(more, less) / (2 * step) for more, less in zip(contents(humidity + step), contents(humidity - step)))
+        dry = 1 - column.saturation(humidity)
+        spread = gas * column.diffusivity * column.porosity ** (1 / 3) * dry ** (10 / 3)
+        diffused = -(spread[1:] + spread[:-1]) / 2 * numpy.diff(humidity) * per_humidity / spacing
+        fraction = (humidity[1:] + humidity[:-1]) / 2 * per_humidity
+        flow = -spacing * numpy.tril(numpy.ones((cells - 1, cells))) * (water + air)  # N between the cells, per rate of each
+        carried = numpy.vstack([numpy.zeros(cells), fraction[:, None] * flow, numpy.zeros(cells)])
+        matrix = numpy.diag(water) + numpy.diff(carried, axis=0) / spacing
+        return numpy.linalg.solve(matrix, -numpy.diff(numpy.concatenate([[0.0], diffused, [0.0]])) / spacing)
+
+    start = numpy.where(numpy.arange(cells) < cells / 2, lower, upper)
+    return solve_ivp(rate, (0, time), start, "BDF", rtol=1e-8, atol=1e-10).y[:, -1]
+
+
+def check_vapour():
+    cells = 60
+    for name, lower, upper, numbers, time, bound in (("dry", 0.9, 0.1, {}, 0.5, 2e-3),
+                                                     ("moist", 0.6001, 0.5999, {"alpha": 7e-4, "exponent": 2}, 3.0, 2e-3)):
+        column = vapour_diffusion.Column(2.4e-3, **numbers)
+        retardation = 1 if name == "dry" else column.retardation((lower + upper) / 2)
+        y = (numpy.arange(cells) + 0.5) * column.height / cells
+        exact = column.humidity(lower, upper, retardation, y, time)
+        found = vapour_by_volumes(column, lower, upper, time, cells)
+        yield f"vapour, {name}: series, to finite volumes", max(abs(found - exact)) / (lower - upper), bound
+
+
 def check_collapse():
     yield "collapse: area under Bui's surface, to 0.2 x 0.1 m2", abs(column_collapse.bui_area() / 0.02 - 1), 0.02
     surface = column_collapse.bui_surface(column_collapse.BUI_FAILURE[:, 0])
@@ -242,7 +285,7 @@ def check_collapse():
 
 def main():
     failed = 0
-    for group in (check_bar, check_wave, check_speeds, check_gas, check_box, check_collapse):
+    for group in (check_bar, check_wave, check_speeds, check_gas, check_box, check_vapour, check_collapse):
         for name, error, bound in group():
             met = error <= bound
             failed += not met

@@ -1,0 +1,60 @@
+// What points add to the nodes' sums of their fluids.
+#pragma once
+
+#include "motion/explicit/transfer.hpp"
+
+namespace talus {
+
+/// With the splines' slope along x and along y, and with their value.
+struct FluidGift {
+    Quad along_x = Quad::Zero(), along_y = Quad::Zero(), value = Quad::Zero();
+};
+using FluidGiftBlock = std::array<FluidGift, block_size>;
+
+/// Relative permeabilities where hardly any of a fluid is left, so that nodes may divide by them.
+inline constexpr double least_liquid_permeability = 1e-30, least_gas_permeability = 1e-9;
+
+inline void fill_gifts(size_t count, const double* y, const double* volume, const double* mass, double unit_weight,
+                       const BlockValues& pressure, const BlockValues& flow_mean, const BlockValues& edge_mean,
+                       FluidGiftBlock& gift) {
+    for (size_t k = 0; k < count; ++k) {
+        const double whole = pressure[k] + unit_weight * y[k];
+        const double push = volume[k] * whole;
+        gift[k].along_x[0] = gift[k].along_y[1] = push;
+        gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
+        gift[k].value[0] = mass[k] * whole;
+        gift[k].value[1] = mass[k] * flow_mean[k];
+        gift[k].value[2] = volume[k];
+        gift[k].value[3] = mass[k] * edge_mean[k];
+    }
+}
+
+/// `gradients`: four numbers a node.
+inline void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline, const FluidGiftBlock& gift,
+                              double* gradients) {
+    NodePatch<Quad, true> patch(gradients, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        for (size_t j = 0; j < 3; ++j) {
+            const Quad by_slope = spline.value_y[j][k] * gift[k].along_x,
+                       by_value = spline.slope_y[j][k] * gift[k].along_y;
+            for (size_t i = 0; i < 3; ++i)
+                patch.node[j][i] += spline.slope_x[i][k] * by_slope + spline.value_x[i][k] * by_value;
+        }
+    }
+}
+
+/// `means`: four numbers a node.
+inline void scatter_means(const Grid& grid, size_t count, const SplineBlock& spline, const FluidGiftBlock& gift,
+                          double* means) {
+    NodePatch<Quad, true> patch(means, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        for (size_t j = 0; j < 3; ++j) {
+            const Quad row = spline.value_y[j][k] * gift[k].value;
+            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += spline.value_x[i][k] * row;
+        }
+    }
+}
+
+}  // namespace talus
