@@ -15,14 +15,24 @@ constexpr double like_steps = 0.2;        // relative difference of two time ste
 constexpr double round_off = 1e-10;  // a whole Newton step that changes no pressure by more has little left to gain,
 constexpr double gaining = 0.5;      // and nothing where it leaves more than this of the residuals
 
-// Infinite where a node came to the surface's kink, on whose other side its slopes are others.
+// What a whole step to the surface's kink may cost of the residuals, and how often.
+constexpr double most_growth = 1.1;
+constexpr int most_turns = 10;
+
+// Whether a node came to the surface's kink, on whose other side its slopes are others.
+bool turns(std::span<const double> pressure, std::span<const double> reached) {
+    for (size_t i = 0; i < pressure.size(); ++i)
+        if ((pressure[i] > 0) != (reached[i] > 0)) return true;
+    return false;
+}
+
+// Infinite where a node turns.
 double largest_relative_change(std::span<const double> pressure, std::span<const double> change,
                                std::span<const double> reached) {
+    if (turns(pressure, reached)) return std::numeric_limits<double>::infinity();
     double largest = 0;
-    for (size_t i = 0; i < pressure.size(); ++i) {
-        if ((pressure[i] > 0) != (reached[i] > 0)) return std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < pressure.size(); ++i)
         largest = std::max(largest, std::abs(change[i]) / (1.0 + std::abs(pressure[i])));
-    }
     return largest;
 }
 
@@ -74,6 +84,7 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
     double error = residual(t, step, target, pressure, beyond_);
     const auto is_met = [&] { return error <= accuracy.node && std::abs(missing_) <= accuracy.sum; };
     const auto is_wished = [&] { return is_met() && astray_ <= accuracy.pressure; };
+    int turn_count = 0;
     bool is_stale = factorised_step_ <= 0 || std::abs(step / factorised_step_ - 1.0) > like_steps;
     for (int iteration = 0; iteration < most_iterations && !is_wished(); ++iteration) {
         if (!std::isfinite(error)) return false;
@@ -91,6 +102,12 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
             move(pressure, length);
             trial_error = residual(t, step, target, trial_, trial_beyond_);
             if (merit_ < merit) break;
+            // A filling surface node stops where the pond begins. It gains nothing on the way there, as it holds all its water already.
+            const bool may_turn = is_fresh && halving == 0 && !was_met && turn_count < most_turns;
+            if (may_turn && merit_ < most_growth * merit && turns(pressure, trial_)) {
+                ++turn_count;
+                break;
+            }
         }
         is_stale = !(merit_ < good_contraction * merit);
         const bool is_round_off = is_fresh && largest_relative_change(pressure, change_, trial_) < round_off;
