@@ -101,6 +101,7 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
     nodes_.gravity = gravity;
     nodes_.liquid_density = water.density;
     nodes_.gas.density = gas.density;
+    nodes_.gas.specific = gas.atmosphere / gas.density;
     nodes_.least_mass = points_.least(solid_mass);
     nodes_.evens = filling != Filling::saturated;
     restart();
@@ -231,9 +232,9 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
 /// Water and gas of a block of points, from their masses.
 template <Filling filling>
 void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBlock& fluids) const {
-    const double specific = gas_.atmosphere / gas_.density;  // R T / M, J/kg
+    const double specific = nodes_.gas.specific;
     const PoreFluids pair{water_.bulk_modulus, gas_.atmosphere};
-    BlockValues pores, filled, alone, effective, logit{};
+    BlockValues pores, filled, effective, logit{};
     find_pores(first, count, pores);
     const double water_volume = 1 / water_.density;
     const double* __restrict water = points_[water_mass] + first;
@@ -241,7 +242,8 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
     for (size_t k = 0; k < count; ++k) {
         const double per_pores = 1 / pores[k];
         filled[k] = water[k] * water_volume * per_pores;
-        alone[k] = std::max(gas[k] * specific * per_pores, 0.0);
+        const double alone = std::max(gas[k] * specific * per_pores, 0.0);
+        fluids.gas_pressure[k] = shared_pressure(pair, filled[k], alone) - pair.atmosphere;
     }
     for (size_t k = 0; k < count; ++k) {
         effective[k] = tables_[static_cast<size_t>(points_.soil[first + k])].effective(filled[k]);
@@ -250,18 +252,14 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
     LogValues(logit.data()) = LogValues(logit.data()).log();
     for (size_t k = 0; k < count; ++k) {
         const auto soil = static_cast<size_t>(points_.soil[first + k]);
-        const SaturationTable& table = tables_[soil];
-        const SharedPores found =
-            talus::share_pores(table, pair, filled[k], alone[k], table.mixed_at(effective[k], logit[k]));
-        fluids.pressure[k] = found.water_pressure;
-        fluids.mobility[k] = hydraulics_[soil].mobility * found.state.permeability;
-        fluids.edge_mobility[k] = hydraulics_[soil].mobility * found.state.mean_permeability;
-        fluids.suction[k] = found.state.suction;
-        fluids.gas_pressure[k] = found.gas_pressure;
+        const SaturationTable::MixedState state = tables_[soil].mixed_at(effective[k], logit[k]);
+        fluids.pressure[k] = fluids.gas_pressure[k] - state.suction;
+        fluids.mobility[k] = hydraulics_[soil].mobility * state.permeability;
+        fluids.edge_mobility[k] = hydraulics_[soil].mobility * state.mean_permeability;
+        fluids.suction[k] = state.suction;
         fluids.gas_mobility[k] =
-            hydraulics_[soil].gas_mobility * std::max(found.state.gas_permeability, least_gas_permeability);
-        fluids.saturation[k] = 1 - found.gas_share;
-        fluids.effective_saturation[k] = std::clamp(table.effective(fluids.saturation[k]), 0.0, 1.0);
+            hydraulics_[soil].gas_mobility * std::max(state.gas_permeability, least_gas_permeability);
+        fluids.effective_saturation[k] = std::clamp(effective[k], 0.0, 1.0);
     }
     find_potential(first, count, fluids);
 }
@@ -269,7 +267,7 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
 /// psi and the volume of the gas, as of gas that is never thinner than next to none.
 template <Filling filling>
 void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidBlock& fluids) const {
-    const double specific = gas_.atmosphere / gas_.density, per_atmosphere = 1 / gas_.atmosphere;
+    const double specific = nodes_.gas.specific, per_atmosphere = 1 / gas_.atmosphere;
     const double density = gas_.density, gravity = nodes_.gravity;
     const double* __restrict mass = points_[gas_mass] + first;
     const double* __restrict y = points_[position_y] + first;
@@ -537,7 +535,7 @@ void ExplicitMixture<filling>::fall_rain() {
 }
 
 /// Retention may hold water more stiffly than water is. Bishop's stress feels that; flow does as far as drag lets it, which it is slower by:
-/// half the step that would just be stable is size^2 n / (2 stiffness lambda).
+/// half the step that would just be stable is size^2 n / (2 stiffness lambda). Suction and the pressure of pores shared with gas add up.
 template <Filling filling>
 typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_stiffness(size_t p,
                                                                                           double porosity) const {
@@ -550,8 +548,11 @@ typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_
     const double borne = is_borne ? std::clamp(table.effective(filled), 0.0, 1.0) * stiffness : 0.0;
     const double mobility = hydraulics_[soil].mobility * table.at(filled).permeability;
     const double creep = 2 * stiffness * mobility / (porosity * nodes_.grid.cell_size);
-    return {std::max(bulk_modulus, borne),
-            std::max(bulk_modulus / water_.density, std::min(stiffness / water_.density, creep * creep))};
+    const auto both = [](double pores, double retention) {
+        return has_gas ? pores + retention : std::max(pores, retention);
+    };
+    return {both(bulk_modulus, borne),
+            both(bulk_modulus / water_.density, std::min(stiffness / water_.density, creep * creep))};
 }
 
 /// Of the points as they are: the square root of the sum of the waves' squares without drag, which bounds each. The gas's own is R T / M at
@@ -567,7 +568,7 @@ void ExplicitMixture<filling>::find_wave_speed() {
         const PoreStiffness pores = pore_stiffness(p, 1 - grains);
         const double fluid = pores.borne / (1 - grains);
         double squares = (frame + grains * grains * fluid) / solid_density + pores.flow_speed_squared;
-        if constexpr (has_gas) squares += gas_.atmosphere / gas_.density;
+        if constexpr (has_gas) squares += nodes_.gas.specific;
         wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
     }
 }
@@ -629,11 +630,6 @@ double ExplicitMixture<filling>::gas_pressure(size_t point) const {
 
 template <Filling filling>
 double ExplicitMixture<filling>::saturation(size_t point) const {
-    if constexpr (has_gas) {
-        FluidBlock fluids{};
-        find_fluids(point, 1, fluids);
-        return fluids.saturation[0];
-    }
     return std::min(share_filled(point), 1.0);
 }
 

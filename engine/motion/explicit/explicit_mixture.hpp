@@ -87,9 +87,8 @@ private:
     static constexpr bool has_gas = filling == Filling::three_phase;
 
     struct FluidBlock {
-        BlockValues pressure, permeability, resistance, suction, effective_saturation;  // of the water
-        BlockValues mobility, edge_mobility, saturation, gas_pressure, gas_potential, gas_mobility,
-            gas_volume;  // where gas moves
+        BlockValues pressure, permeability, resistance, suction, effective_saturation;               // of the water
+        BlockValues mobility, edge_mobility, gas_pressure, gas_potential, gas_mobility, gas_volume;  // where gas moves
     };
 
     struct PoreStiffness {
