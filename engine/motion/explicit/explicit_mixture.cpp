@@ -32,9 +32,9 @@ constexpr double least_gas_permeability = 1e-9;  // where no gas is left, so tha
 
 using LogValues = Eigen::Map<Eigen::Array<double, block_size, 1>>;  // logarithms of a block at once
 
-/// What a point adds to the nodes' sums: with the splines' slope along x and along y, and with their value.
+/// What a point adds to the nodes' sums: with the splines' slopes along x, along y, along x, along y, and with their value.
 struct FluidGift {
-    Quad along_x = Quad::Zero(), along_y = Quad::Zero(), value = Quad::Zero();
+    Quad slope = Quad::Zero(), value = Quad::Zero();
 };
 using FluidGiftBlock = std::array<FluidGift, block_size>;
 
@@ -44,8 +44,8 @@ void fill_gifts(size_t count, const double* y, const double* volume, const doubl
     for (size_t k = 0; k < count; ++k) {
         const double whole = pressure[k] + unit_weight * y[k];
         const double push = volume[k] * whole;
-        gift[k].along_x[0] = gift[k].along_y[1] = push;
-        gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
+        gift[k].slope[0] = gift[k].slope[1] = push;
+        gift[k].slope[2] = gift[k].slope[3] = volume[k];
         gift[k].value[0] = mass[k] * whole;
         gift[k].value[1] = mass[k] * flow_mean[k];
         gift[k].value[2] = volume[k];
@@ -58,11 +58,10 @@ void scatter_gradients(const Grid& grid, size_t count, const SplineBlock& spline
     NodePatch<Quad, true> patch(&gradients.data()->push_x, grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
+        const SlopeWeights weight(spline, k);
         for (size_t j = 0; j < 3; ++j) {
-            const Quad by_slope = spline.value_y[j][k] * gift[k].along_x,
-                       by_value = spline.slope_y[j][k] * gift[k].along_y;
-            for (size_t i = 0; i < 3; ++i)
-                patch.node[j][i] += spline.slope_x[i][k] * by_slope + spline.value_x[i][k] * by_value;
+            const Quad row = weight.of_row[j] * gift[k].slope;
+            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += weight.of_column[i] * row;
         }
     }
 }
@@ -324,8 +323,8 @@ void ExplicitMixture<filling>::push_gas(size_t first, size_t count, const Spline
     FluidGiftBlock gift;
     for (size_t k = 0; k < count; ++k) {
         const double volume = fluids.gas_volume[k], push = volume * fluids.gas_potential[k];
-        gift[k].along_x[0] = gift[k].along_y[1] = gift[k].value[0] = push;
-        gift[k].along_x[2] = gift[k].along_y[3] = gift[k].value[2] = volume;
+        gift[k].slope[0] = gift[k].slope[1] = gift[k].value[0] = push;
+        gift[k].slope[2] = gift[k].slope[3] = gift[k].value[2] = volume;
         gift[k].value[1] = points_[solid_mass][first + k] * fluids.gas_mobility[k];
         gift[k].value[3] = points_[gas_mass][first + k];
     }

@@ -277,7 +277,7 @@ GasAnswer GridMixture<has_gas>::answer_of_gas(size_t node, double dt) {
 /// Gas that would cross more than half a cell in a step feels more drag, so that no point loses more of it than it holds: at that speed, more than half of
 /// its wave's, Darcy's law is none.
 void GasAnswer::choke(const NodeVector& relative_velocity, double most) {
-    const double needed = std::hypot(relative_velocity.x, relative_velocity.y) / most - 1;
+    const double needed = std::sqrt(dot(relative_velocity, relative_velocity)) / most - 1;
     if (needed <= drag) return;
     const double share = (1 + drag) / (1 + needed);
     drag = needed;
