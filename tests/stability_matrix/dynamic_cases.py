@@ -98,6 +98,7 @@ def gas_cases():
         yield Case(f"dynamic_gas/K_{conductivity:g}", gassy_bank(conductivity=conductivity), SLIDE)
     for alpha, n in ((1e-7, 1.03), (1e-2, 6), (1e-7, 6)):
         yield Case(f"dynamic_gas/{alpha:g}_{n:g}", gassy_bank(alpha=alpha, n=n, table=-1.0), SLIDE)
+    yield Case("dynamic_gas/soft_water", gassy_bank(water=1e5, conductivity=0.3), SLIDE)
     yield Case("dynamic_gas/porous", gassy_bank(porosity=0.9), SLIDE)
     yield Case("dynamic_gas/dense", gassy_bank(porosity=0.05), SLIDE)
 

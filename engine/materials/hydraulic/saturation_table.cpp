@@ -38,6 +38,7 @@ double soft_suction(const HydraulicTable& curves, double maximum, double bulk_mo
 SaturationTable::SaturationTable(const Hydraulics& hydraulics, double bulk_modulus)
     : residual_(hydraulics.retention.residual_saturation),
       maximum_(hydraulics.retention.maximum_saturation),
+      per_range_(1 / (maximum_ - residual_)),
       rows_(saturation_rows::count - 1) {
     const HydraulicTable curves(hydraulics);
     chord_pressure_ = -soft_suction(curves, maximum_, bulk_modulus);

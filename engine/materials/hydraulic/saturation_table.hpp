@@ -44,9 +44,7 @@ public:
     /// Slope of the pressure with the saturation, Pa, below the maximum one.
     [[nodiscard]] double stiffness(double saturation) const;
 
-    [[nodiscard]] double effective(double saturation) const {
-        return (saturation - residual_) / (maximum_ - residual_);
-    }
+    [[nodiscard]] double effective(double saturation) const { return (saturation - residual_) * per_range_; }
     [[nodiscard]] double maximum() const { return maximum_; }
 
 private:
@@ -60,7 +58,7 @@ private:
         double t;  // from it to the next
     };
     [[nodiscard]] static Place place_of(double logit);
-    double residual_, maximum_;
+    double residual_, maximum_, per_range_;
     double chord_pressure_, chord_permeability_, chord_effective_;  // where the chord begins
     double chord_gas_permeability_;
     std::vector<Row> rows_;

@@ -142,7 +142,7 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
 }
 
 /// Points pass water and gas on to others around the same nodes, until all have the nodes' head; where the step `keeps` what it leaves, it is
-/// due to them. With gas, `fluids` is filled from what keep_pressures() left.
+/// due to them. With gas, `fluids` is filled from what keep_fluids() left.
 template <Filling filling>
 template <bool keeps>
 void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt,
@@ -158,8 +158,8 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
     if constexpr (has_gas) {
         VelocityBlock gas_evening;
         std::copy_n(points_[water_due] + first, count, fluids.pressure.begin());
-        std::copy_n(points_[gas_due] + first, count, fluids.gas_pressure.begin());
-        find_potential(first, count, fluids);
+        std::copy_n(points_[gas_due] + first, count, fluids.gas_potential.begin());
+        std::copy_n(points_[gas_velocity_x] + first, count, fluids.gas_volume.begin());
         gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
         for (size_t k = 0; k < count; ++k)
             pass(gas_mass, gas_due, k,
@@ -175,11 +175,12 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
     }
 }
 
-/// Between the two passes of a step nothing is due: its place holds the pressures for the second pass.
+/// Between the two passes of a step nothing is due and the gas's velocity is the nodes': their places hold what the second pass evens out by.
 template <Filling filling>
-void ExplicitMixture<filling>::keep_pressures(size_t first, size_t count, const FluidBlock& fluids) {
+void ExplicitMixture<filling>::keep_fluids(size_t first, size_t count, const FluidBlock& fluids) {
     std::copy_n(fluids.pressure.begin(), count, points_[water_due] + first);
-    std::copy_n(fluids.gas_pressure.begin(), count, points_[gas_due] + first);
+    std::copy_n(fluids.gas_potential.begin(), count, points_[gas_due] + first);
+    std::copy_n(fluids.gas_volume.begin(), count, points_[gas_velocity_x] + first);
 }
 
 /// What the flow of the last step brings to the points: they get it with the strain of the same time, in the next step.
@@ -244,10 +245,9 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
         const double alone = std::max(gas[k] * specific * per_pores, 0.0);
         fluids.gas_pressure[k] = shared_pressure(pair, filled[k], alone) - pair.atmosphere;
     }
-    for (size_t k = 0; k < count; ++k) {
+    for (size_t k = 0; k < count; ++k)
         effective[k] = tables_[static_cast<size_t>(points_.soil[first + k])].effective(filled[k]);
-        logit[k] = SaturationTable::odds(effective[k]);
-    }
+    for (size_t k = 0; k < count; ++k) logit[k] = SaturationTable::odds(effective[k]);
     LogValues(logit.data()) = LogValues(logit.data()).log();
     for (size_t k = 0; k < count; ++k) {
         const auto soil = static_cast<size_t>(points_.soil[first + k]);
@@ -392,7 +392,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         scatter_means(nodes_.grid, count, spline, gift, nodes_.means);
         if constexpr (has_gas) {
             push_gas(first, count, spline, fluids);
-            keep_pressures(first, count, fluids);
+            keep_fluids(first, count, fluids);
         }
     }
 }

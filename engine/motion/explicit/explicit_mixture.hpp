@@ -115,7 +115,7 @@ private:
     void find_gas_weights(size_t first, size_t count, BlockValues& weight) const;
     void share_pores(size_t first, size_t count, FluidBlock& fluids) const;
     void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
-    void keep_pressures(size_t first, size_t count, const FluidBlock& fluids);
+    void keep_fluids(size_t first, size_t count, const FluidBlock& fluids);
     void take_gas(size_t first, size_t count, const VelocityBlock& rates);
     void push_gas(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
     void give_gas(size_t first, size_t count, const SplineBlock& spline, const GiftBlock& gift);
