@@ -132,8 +132,9 @@ inline void gather_divergence(const Grid& grid, const std::vector<NodeVector>& f
         const SlopeWeights weight(spline, k);
         Pair sum = Pair::Zero();
         for (size_t j = 0; j < 3; ++j) {
-            const auto along_row = [&](size_t i) { return (weight.of_column[i].head<2>() * patch.node[j][i]).eval(); };
-            sum += weight.of_row[j].head<2>() * (along_row(0) + along_row(1) + along_row(2));
+            sum += weight.of_row[j].head<2>() * (weight.of_column[0].head<2>() * patch.node[j][0] +
+                                                 weight.of_column[1].head<2>() * patch.node[j][1] +
+                                                 weight.of_column[2].head<2>() * patch.node[j][2]);
         }
         divergence[k] = sum[0] + sum[1];
     }
