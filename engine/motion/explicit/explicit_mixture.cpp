@@ -82,7 +82,7 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     restarted_ = false;
     nodes_.end_step(dt);
     const double drift = dt * nodes_.speed / nodes_.grid.cell_size;
-    if (!arrangement_.bears(drift)) return false;
+    if (!Arrangement::bears(drift)) return false;
     if (arrangement_.is_outgrown(drift)) arrange_points();
     arrangement_.drift(drift);
     arrangement_.for_each_strip([&](Strip strip) {
@@ -123,9 +123,10 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
                              keeps ? vapour_due : vapour_mass);
         }
         gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
-        for (size_t k = 0; k < count; ++k)
+        for (size_t k = 0; k < count; ++k) {
             pass(gas_mass, gas_due, k,
                  dt * fluids.gas_volume[k] * (gas_evening.y[k] - gas_evening.x[k] * fluids.gas_potential[k]));
+        }
     } else {
         find_fluids(first, count, fluids);
         gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
@@ -161,9 +162,10 @@ void ExplicitMixture<filling>::owe_water(Strip strip) {
             BlockValues weight;
             find_gas_weights(first, count, weight);
             gather_values(nodes_.grid, nodes_.gas.rates, count, spline, rates);
-            for (size_t k = 0; k < count; ++k)
+            for (size_t k = 0; k < count; ++k) {
                 points_[gas_due][first + k] +=
                     nodes_.flow_time * (weight[k] * rates.x[k] + points_[gas_mass][first + k] * rates.y[k]);
+            }
         }
     }
 }
@@ -344,9 +346,10 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         if constexpr (has_gas) find_potential(first, count, fluids);
         if (yields_) {
             set_strength(soils_, points_, first, count, nodes_.grid.cell_size, material);
-            if constexpr (filling != Filling::saturated)
+            if constexpr (filling != Filling::saturated) {
                 add_apparent_cohesion(hydraulics_, points_, first, count, fluids.suction, fluids.effective_saturation,
                                       material);
+            }
             return_stresses(points_, first, count, material);
         }
         for (size_t k = 0; k < count; ++k) {
@@ -623,6 +626,7 @@ double ExplicitMixture<filling>::gas_pressure(size_t point) const {
 
 template <Filling filling>
 double ExplicitMixture<filling>::saturation(size_t point) const {
+    if constexpr (exchanges) return partition_of(point).saturation;
     return std::min(share_filled(point), 1.0);
 }
 

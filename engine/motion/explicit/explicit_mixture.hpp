@@ -106,7 +106,7 @@ private:
     struct FluidBlock {
         BlockValues pressure, permeability, resistance, suction, effective_saturation;               // of the water
         BlockValues mobility, edge_mobility, gas_pressure, gas_potential, gas_mobility, gas_volume;  // where gas moves
-        BlockValues saturation, vapour, dissolved;  // where fluids exchange them; kg per metre of thickness
+        BlockValues saturation, vapour, dissolved;  // where fluids exchange them: -, kg per metre of thickness
     };
 
     struct PoreStiffness {
