@@ -11,6 +11,8 @@ namespace talus {
 namespace {
 
 constexpr int most_iterations = 40;
+// In which the disagreement is to halve: the flow's own error may keep it from ever falling further in so long an exchange.
+constexpr int patience = 12;
 // Of ground that yields, beyond which flow and skeleton are solved for together.
 constexpr int most_plain_iterations = 15;
 // Disagreement of the first iteration at which the next exchange is as long as this one.
@@ -30,7 +32,8 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     // No forecast that errs may keep exchanges short.
     const double least_growth = is_short ? 2.0 : 0.0;
     FlowPath path{state_.flow, state_.watch, {}};
-    double first_disagreement = 0;
+    double first_disagreement = 0, least_disagreement = std::numeric_limits<double>::infinity();
+    int least_at = 0;
     if (flow_) {
         set_flow_forcing(duration);
         expect_skeleton(duration);
@@ -62,7 +65,11 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
             first_disagreement = forecast_error_;
             break;
         }
-        if (iteration == most_iterations) return Exchange::disagreed;
+        if (disagreement_ < 0.5 * least_disagreement) {
+            least_disagreement = disagreement_;
+            least_at = iteration;
+        }
+        if (iteration == most_iterations || iteration - least_at == patience) return Exchange::disagreed;
         correct_expectation();
         expect_skeleton_at(duration, end_volume_, end_stress_);
     }

@@ -108,6 +108,43 @@ TEST_CASE("a head linear in place flows evenly through distorted saturated groun
     for (const CellKind kind : {CellKind::quads, CellKind::triangles}) CHECK(flow_patch_error(kind) < 1e-10);
 }
 
+TEST_CASE("the flow does not jump where a full node comes to hydrostatic balance with a dry one above it") {
+    Scene scene = rigid_scene({1e-4, 1e-4, 0});
+    scene.soils[0].hydraulics.retention.alpha = 7e-3;
+    scene.soils[0].hydraulics.retention.n = 5.6;
+    const double unit_weight = scene.water.density * scene.gravity;
+    const Mesh mesh = mesh_of(CellKind::quads, true);
+    FlowSystem system = make_flow(scene, mesh, {});
+    std::vector<double> pressure;
+    for (int32_t i = 0; i < mesh.node_count(); ++i)
+        pressure.push_back(unit_weight * (0.75 - mesh.position[2 * static_cast<size_t>(i) + 1]) +
+                           50 * mesh.position[2 * static_cast<size_t>(i)]);
+    const auto inflow_at = [&](size_t node, double p) {
+        std::vector<double> moved = pressure;
+        moved[node] = p;
+        system.evaluate(0, moved);
+        return std::vector<double>(system.inflow().begin(), system.inflow().end());
+    };
+    int looked_at = 0;
+    for (size_t l = 0; l < system.network.links.size(); ++l) {
+        const auto a =
+            static_cast<size_t>(system.network.portions[static_cast<size_t>(system.network.links[l].portion_a)].node);
+        const auto b =
+            static_cast<size_t>(system.network.portions[static_cast<size_t>(system.network.links[l].portion_b)].node);
+        if (!(pressure[a] > 500 && pressure[b] < -1000)) continue;
+        const double balance = pressure[b] - system.network.fall[l];
+        const std::vector<double> falling = inflow_at(a, balance - 1e-6), rising = inflow_at(a, balance + 1e-6);
+        double jump = 0, largest = 0;
+        for (size_t i = 0; i < falling.size(); ++i) {
+            jump = std::max(jump, std::abs(rising[i] - falling[i]));
+            largest = std::max(largest, std::abs(rising[i]));
+        }
+        CHECK(jump < 1e-5 * largest);
+        ++looked_at;
+    }
+    CHECK(looked_at > 3);
+}
+
 TEST_CASE("what leaves one node enters others") {
     std::mt19937 random(2);
     for (const CellKind kind : {CellKind::quads, CellKind::triangles}) {
