@@ -106,6 +106,7 @@ def gas_cases(sweep, bank):
         yield Case(f"{sweep}/K_{conductivity:g}", bank(conductivity=conductivity), SLIDE)
     for alpha, n in ((1e-7, 1.03), (1e-2, 6), (1e-7, 6)):
         yield Case(f"{sweep}/{alpha:g}_{n:g}", bank(alpha=alpha, n=n, table=-1.0), SLIDE)
+    yield Case(f"{sweep}/soft_water", bank(water=1e5, conductivity=0.3), SLIDE)
     yield Case(f"{sweep}/porous", bank(porosity=0.9), SLIDE)
     yield Case(f"{sweep}/dense", bank(porosity=0.05), SLIDE)
 

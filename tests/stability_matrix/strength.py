@@ -108,8 +108,11 @@ class YieldCheck:
 
     def _pore_stress(self):
         if "point_pressure" in self.engine.fields:  # ground in motion has no cells, and its points hold water, not pressure
-            pressure, saturation = self.engine.read("point_pressure"), self.engine.read("saturation")
-            return pressure * numpy.where(pressure < 0, self._effective(saturation, self.soils), 1)
+            pressure = self.engine.read("point_pressure")
+            share = self._effective(self.engine.read("saturation"), self.soils)
+            if "gas_pressure" in self.engine.fields:
+                return share * pressure + (1 - share) * self.engine.read("gas_pressure")
+            return pressure * numpy.where(pressure < 0, share, 1)
         starts, nodes = (self.engine.read(name).astype(int) for name in ("cell_start", "cell_nodes"))
         pressure, soils = self.engine.read("pressure"), self.engine.read("cell_soil").astype(int)
         parts = []

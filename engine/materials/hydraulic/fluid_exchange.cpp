@@ -30,15 +30,11 @@ Filled fill(const SaturationTable& table, const FluidExchange& fluids, double ai
     const double gas = fluids.air * air_in_gas + fluids.vapour * vapour - fluids.atmosphere;
     const double gas_slope =
         fluids.air * air_in_gas * (1 - fluids.solubility) / per_solubility + fluids.vapour * vapour_slope;
-    const double liquid = gas - state.suction;
-    const bool is_pressed = liquid > std::min(gas, 0.0);
-    const double pressing = is_pressed ? liquid : std::min(gas, 0.0);
-    const double pressing_slope = is_pressed ? gas_slope - suction_slope : gas < 0 ? gas_slope : 0.0;
     const double dissolved = fluids.solubility * air_in_gas;
-    const double density = fluids.liquid_density * (1 + pressing / fluids.bulk_modulus);
-    const double water_slope = density + saturation * fluids.liquid_density * pressing_slope / fluids.bulk_modulus -
+    const double density = fluids.liquid_density * (1 + gas / fluids.bulk_modulus);
+    const double water_slope = density + saturation * fluids.liquid_density * gas_slope / fluids.bulk_modulus -
                                dissolved / per_solubility - vapour + room * vapour_slope;
-    return {{saturation, liquid, gas, vapour, dissolved, state},
+    return {{saturation, gas - state.suction, gas, vapour, dissolved, state},
             saturation * (density - dissolved) + room * vapour,
             water_slope,
             suction_slope,

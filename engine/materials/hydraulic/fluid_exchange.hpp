@@ -3,10 +3,10 @@
 //     vapour in the gas        rho_v = rho_sat exp(-s M_w / (rho_l R T))                        Kelvin
 //     air in the liquid        rho_d = M_a H p_a, p_a the partial pressure of the gas's air     Henry
 //     gas                      P = atmosphere + p_g = R T (rho_v / M_w + rho_a / M_a)           Dalton, ideal gases
-//     liquid                   rho = rho_l (1 + p_l / K) where p_l > 0, with all that is dissolved in it
+//     liquid                   rho = rho_l (1 + p_g / K), with all that is dissolved in it
 //     p_g - p_l = s(S)                                                                          the soil's retention
-// As in shared_pores.hpp suction does not stretch the liquid; a gas thinner than the atmosphere does: rho = rho_l (1 + p_g / K). Where
-// all of the air is dissolved no gas is left, and where all of the water is vapour no liquid is.
+// As in shared_pores.hpp the gas's pressure presses and stretches the liquid, suction does not. Where all of the air is dissolved no gas is
+// left, and where all of the water is vapour no liquid is.
 #pragma once
 
 #include "materials/hydraulic/saturation_table.hpp"

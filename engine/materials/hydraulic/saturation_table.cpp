@@ -38,8 +38,8 @@ double soft_suction(const HydraulicTable& curves, double maximum, double bulk_mo
 SaturationTable::SaturationTable(const Hydraulics& hydraulics, double bulk_modulus)
     : residual_(hydraulics.retention.residual_saturation),
       maximum_(hydraulics.retention.maximum_saturation),
-      rows_(saturation_rows::count),
-      mixed_rows_(saturation_rows::count) {
+      per_range_(1 / (maximum_ - residual_)),
+      rows_(saturation_rows::count - 1) {
     const HydraulicTable curves(hydraulics);
     chord_pressure_ = -soft_suction(curves, maximum_, bulk_modulus);
     const HydraulicState end = curves.at(chord_pressure_);
@@ -47,20 +47,27 @@ SaturationTable::SaturationTable(const Hydraulics& hydraulics, double bulk_modul
     chord_effective_ = effective(end.saturation);
     const auto gas_at = [&](double at) { return gas_permeability(hydraulics.retention, -at); };
     chord_gas_permeability_ = gas_at(chord_pressure_);
-    std::vector<double> pressure, permeability, gas, mean;
+    std::array<std::vector<double>, 4> values, slopes;
     for (int i = 0; i < saturation_rows::count; ++i) {
         const double logit = saturation_rows::lowest + i * saturation_rows::spacing;
         const double here = std::min(1 / (1 + std::exp(-logit)), chord_effective_);
-        pressure.push_back(curves.pressure_of_saturation(residual_ + here * (maximum_ - residual_)));
-        permeability.push_back(curves.at(pressure.back()).permeability);
-        gas.push_back(gas_at(pressure.back()));
-        mean.push_back(curves.at(pressure.back()).potential / pressure.back());
+        const double pressure = curves.pressure_of_saturation(residual_ + here * (maximum_ - residual_));
+        const HydraulicState state = curves.at(pressure);
+        values[0].push_back(-pressure);
+        values[1].push_back(state.permeability);
+        values[2].push_back(gas_at(pressure));
+        values[3].push_back(state.potential / pressure);
     }
-    const std::vector<double> pressure_slope = row_slopes(pressure), permeability_slope = row_slopes(permeability),
-                              gas_slope = row_slopes(gas), mean_slope = row_slopes(mean);
+    for (size_t v = 0; v < 4; ++v) slopes[v] = row_slopes(values[v]);
     for (size_t i = 0; i < rows_.size(); ++i) {
-        rows_[i] = {pressure[i], pressure_slope[i], permeability[i], permeability_slope[i]};
-        mixed_rows_[i] = {gas[i], gas_slope[i], mean[i], mean_slope[i]};
+        for (size_t v = 0; v < 4; ++v) {
+            const auto lane = static_cast<Eigen::Index>(v);
+            const Cubic cubic = cubic_between(values[v][i], values[v][i + 1], slopes[v][i], slopes[v][i + 1]);
+            rows_[i].c0[lane] = cubic.c0;
+            rows_[i].c1[lane] = cubic.c1;
+            rows_[i].c2[lane] = cubic.c2;
+            rows_[i].c3[lane] = cubic.c3;
+        }
     }
 }
 

@@ -6,6 +6,8 @@
 
 #include "materials/hydraulic/hydraulic_table.hpp"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -42,29 +44,24 @@ public:
     /// Slope of the pressure with the saturation, Pa, below the maximum one.
     [[nodiscard]] double stiffness(double saturation) const;
 
-    [[nodiscard]] double effective(double saturation) const {
-        return (saturation - residual_) / (maximum_ - residual_);
-    }
+    [[nodiscard]] double effective(double saturation) const { return (saturation - residual_) * per_range_; }
     [[nodiscard]] double maximum() const { return maximum_; }
 
 private:
+    /// A cubic from each row to the next, c0 + t (c1 + t (c2 + t c3)), of suction, k_rl, k_rg and mean k_rl side by side.
     struct Row {
-        double pressure, pressure_slope, permeability, permeability_slope;  // slopes per row
+        Eigen::Array4d c0, c1, c2, c3;
+        [[nodiscard]] Eigen::Array4d at(double t) const { return c0 + t * (c1 + t * (c2 + t * c3)); }
     };
     struct Place {
         size_t row;
         double t;  // from it to the next
     };
     [[nodiscard]] static Place place_of(double logit);
-    struct MixedRow {
-        double permeability, slope, mean, mean_slope;  // of the gas; mean k_rl; likewise
-    };
-
-    double residual_, maximum_;
+    double residual_, maximum_, per_range_;
     double chord_pressure_, chord_permeability_, chord_effective_;  // where the chord begins
     double chord_gas_permeability_;
     std::vector<Row> rows_;
-    std::vector<MixedRow> mixed_rows_;
 };
 
 namespace saturation_rows {
@@ -80,9 +77,8 @@ inline SaturationTable::State SaturationTable::at(double saturation) const {
         return {share * chord_pressure_, 1 - share * (1 - chord_permeability_)};
     }
     const auto [row, t] = place_of(effective > 0 ? std::log(odds(effective)) : saturation_rows::lowest);
-    const Row &a = rows_[row], &b = rows_[row + 1];
-    return {hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t).value,
-            hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t).value};
+    const Eigen::Array4d found = rows_[row].at(t);
+    return {-found[0], found[1]};
 }
 
 inline SaturationTable::Place SaturationTable::place_of(double logit) {
@@ -100,21 +96,17 @@ inline SaturationTable::MixedState SaturationTable::mixed_at(double effective, d
         return {-share * chord_pressure_, 1 - lost, share * chord_gas_permeability_, 1 - 0.5 * lost};
     }
     const auto [row, t] = place_of(logit);
-    const Row &a = rows_[row], &b = rows_[row + 1];
-    const MixedRow &more_a = mixed_rows_[row], &more_b = mixed_rows_[row + 1];
-    return {-hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t).value,
-            hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t).value,
-            hermite(more_a.permeability, more_b.permeability, more_a.slope, more_b.slope, t).value,
-            hermite(more_a.mean, more_b.mean, more_a.mean_slope, more_b.mean_slope, t).value};
+    const Eigen::Array4d found = rows_[row].at(t);
+    return {found[0], found[1], found[2], found[3]};
 }
 
 inline double SaturationTable::suction_slope(double effective, double logit) const {
     if (effective >= 1) return 0;
     if (effective >= chord_effective_) return chord_pressure_ / ((1 - chord_effective_) * (maximum_ - residual_));
     const auto [row, t] = place_of(logit);
-    const Row &a = rows_[row], &b = rows_[row + 1];
+    const Row& cubic = rows_[row];
     const double by_row = saturation_rows::spacing * effective * (1 - effective) * (maximum_ - residual_);
-    return by_row > 0 ? -hermite(a.pressure, b.pressure, a.pressure_slope, b.pressure_slope, t).slope / by_row : 0;
+    return by_row > 0 ? (cubic.c1[0] + t * (2 * cubic.c2[0] + 3 * t * cubic.c3[0])) / by_row : 0;
 }
 
 }  // namespace talus

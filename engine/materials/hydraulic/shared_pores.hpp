@@ -1,23 +1,15 @@
-// Water and gas in the same pores: their pressures from their masses and the pores' volume.
+// Water and gas in the same pores: their pressure from their masses and the pores' volume.
 //
-//     gas    P = atmosphere + p_g = gas / (1 - S)              ideal and isothermal; `gas` is P were the pores full of it
-//     water  p_l = K (filled / S - 1) where p_l > 0, S = filled else
-//     p_g - p_l = s(S)                                         the soil's retention
-// Tension does not stretch the water. The pressures grow without bound as pores close: there is one solution for any masses above zero.
+//     gas    P = atmosphere + p_g = gas / (1 - S)     ideal and isothermal; `gas` is P were the pores full of it
+//     water  filled = S (1 + p_g / K)
+// P is the root above zero of P^2 / K - (filled + gas / K - c) P - c gas = 0, c = 1 - atmosphere / K. It grows with either mass, for water stiffer
+// than the atmosphere's pressure by K per `filled` at most: however little gas there is, pores are as stiff as water and no stiffer, whether
+// pressed or stretched. Suction stretches no water: it is the retention's at `filled`, and p_l = p_g - s.
 #pragma once
-
-#include "materials/hydraulic/saturation_table.hpp"
 
 #include <cmath>
 
 namespace talus {
-
-struct SharedPores {
-    double water_pressure;  ///< p_l, Pa
-    double gas_pressure;    ///< p_g, Pa
-    double gas_share;       ///< 1 - S
-    SaturationTable::MixedState state;
-};
 
 /// The stiff fluids of a scene.
 struct PoreFluids {
@@ -25,18 +17,13 @@ struct PoreFluids {
     double atmosphere;    ///< Pa, absolute
 };
 
-/// Where the water is pressed together. `filled`: volume of the water without pressure, over the pores'; `gas`: Pa, absolute, were the pores full
-/// of it.
-SharedPores press_pores(const SaturationTable& table, const PoreFluids& fluids, double filled, double gas);
-
-/// The same of any water; `state` is the retention's at `filled`.
-inline SharedPores share_pores(const SaturationTable& table, const PoreFluids& fluids, double filled, double gas,
-                               const SaturationTable::MixedState& state) {
-    if (filled < 1) {
-        const double gas_pressure = gas / (1 - filled) - fluids.atmosphere;
-        if (gas_pressure <= state.suction) return {gas_pressure - state.suction, gas_pressure, 1 - filled, state};
-    }
-    return press_pores(table, fluids, filled, gas);
+/// P, absolute, Pa. `filled`: volume of the water without pressure, over the pores'; `gas`: Pa, absolute, were the pores full of it.
+inline double shared_pressure(const PoreFluids& fluids, double filled, double gas) {
+    const double softness = 1 / fluids.bulk_modulus, rest = 1 - fluids.atmosphere * softness;
+    const double excess = filled + gas * softness - rest;
+    const double root = std::sqrt(excess * excess + 4 * rest * gas * softness);
+    // Written so that nothing cancels.
+    return excess < 0 ? 2 * rest * gas / (root - excess) : 0.5 * fluids.bulk_modulus * (root + excess);
 }
 
 }  // namespace talus

@@ -55,6 +55,7 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
     nodes_.gravity = gravity;
     nodes_.liquid_density = water.density;
     nodes_.gas.density = gas.density;
+    nodes_.gas.specific = gas.atmosphere / gas.density;
     if constexpr (exchanges) set_exchange(exchange);
     nodes_.least_mass = points_.least(solid_mass);
     nodes_.evens = filling != Filling::saturated;
@@ -81,7 +82,7 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     restarted_ = false;
     nodes_.end_step(dt);
     const double drift = dt * nodes_.speed / nodes_.grid.cell_size;
-    if (!arrangement_.bears(drift)) return false;
+    if (!Arrangement::bears(drift)) return false;
     if (arrangement_.is_outgrown(drift)) arrange_points();
     arrangement_.drift(drift);
     arrangement_.for_each_strip([&](Strip strip) {
@@ -99,7 +100,7 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
 }
 
 /// Points pass water and gas on to others around the same nodes, until all have the nodes' head; where the step `keeps` what it leaves, it is
-/// due to them. With gas, `fluids` is filled from what keep_pressures() left.
+/// due to them. With gas, `fluids` is filled from what keep_fluids() left.
 template <Filling filling>
 template <bool keeps>
 void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt,
@@ -115,16 +116,17 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
     if constexpr (has_gas) {
         VelocityBlock gas_evening;
         std::copy_n(points_[water_due] + first, count, fluids.pressure.begin());
-        std::copy_n(points_[gas_due] + first, count, fluids.gas_pressure.begin());
-        find_potential(first, count, fluids);
+        std::copy_n(points_[gas_due] + first, count, fluids.gas_potential.begin());
+        std::copy_n(points_[gas_velocity_x] + first, count, fluids.gas_volume.begin());
         if constexpr (exchanges) {
             even_out_solutes(first, count, spline, dt, fluids, keeps ? dissolved_due : dissolved_mass,
                              keeps ? vapour_due : vapour_mass);
         }
         gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
-        for (size_t k = 0; k < count; ++k)
+        for (size_t k = 0; k < count; ++k) {
             pass(gas_mass, gas_due, k,
                  dt * fluids.gas_volume[k] * (gas_evening.y[k] - gas_evening.x[k] * fluids.gas_potential[k]));
+        }
     } else {
         find_fluids(first, count, fluids);
         gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
@@ -136,11 +138,12 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
     }
 }
 
-/// Between the two passes of a step nothing is due: its place holds the pressures for the second pass.
+/// Between the two passes of a step nothing is due and the gas's velocity is the nodes': their places hold what the second pass evens out by.
 template <Filling filling>
-void ExplicitMixture<filling>::keep_pressures(size_t first, size_t count, const FluidBlock& fluids) {
+void ExplicitMixture<filling>::keep_fluids(size_t first, size_t count, const FluidBlock& fluids) {
     std::copy_n(fluids.pressure.begin(), count, points_[water_due] + first);
-    std::copy_n(fluids.gas_pressure.begin(), count, points_[gas_due] + first);
+    std::copy_n(fluids.gas_potential.begin(), count, points_[gas_due] + first);
+    std::copy_n(fluids.gas_volume.begin(), count, points_[gas_velocity_x] + first);
 }
 
 /// What the flow of the last step brings to the points: they get it with the strain of the same time, in the next step.
@@ -159,9 +162,10 @@ void ExplicitMixture<filling>::owe_water(Strip strip) {
             BlockValues weight;
             find_gas_weights(first, count, weight);
             gather_values(nodes_.grid, nodes_.gas.rates, count, spline, rates);
-            for (size_t k = 0; k < count; ++k)
+            for (size_t k = 0; k < count; ++k) {
                 points_[gas_due][first + k] +=
                     nodes_.flow_time * (weight[k] * rates.x[k] + points_[gas_mass][first + k] * rates.y[k]);
+            }
         }
     }
 }
@@ -194,9 +198,9 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
 /// Water and gas of a block of points, from their masses.
 template <Filling filling>
 void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBlock& fluids) const {
-    const double specific = gas_.atmosphere / gas_.density;  // R T / M, J/kg
+    const double specific = nodes_.gas.specific;
     const PoreFluids pair{water_.bulk_modulus, gas_.atmosphere};
-    BlockValues pores, filled, alone, effective, logit{};
+    BlockValues pores, filled, effective, logit{};
     find_pores(first, count, pores);
     const double water_volume = 1 / water_.density;
     const double* __restrict water = points_[water_mass] + first;
@@ -204,34 +208,30 @@ void ExplicitMixture<filling>::share_pores(size_t first, size_t count, FluidBloc
     for (size_t k = 0; k < count; ++k) {
         const double per_pores = 1 / pores[k];
         filled[k] = water[k] * water_volume * per_pores;
-        alone[k] = std::max(gas[k] * specific * per_pores, 0.0);
+        const double alone = std::max(gas[k] * specific * per_pores, 0.0);
+        fluids.gas_pressure[k] = shared_pressure(pair, filled[k], alone) - pair.atmosphere;
     }
-    for (size_t k = 0; k < count; ++k) {
+    for (size_t k = 0; k < count; ++k)
         effective[k] = tables_[static_cast<size_t>(points_.soil[first + k])].effective(filled[k]);
-        logit[k] = SaturationTable::odds(effective[k]);
-    }
+    for (size_t k = 0; k < count; ++k) logit[k] = SaturationTable::odds(effective[k]);
     LogValues(logit.data()) = LogValues(logit.data()).log();
     for (size_t k = 0; k < count; ++k) {
         const auto soil = static_cast<size_t>(points_.soil[first + k]);
-        const SaturationTable& table = tables_[soil];
-        const SharedPores found =
-            talus::share_pores(table, pair, filled[k], alone[k], table.mixed_at(effective[k], logit[k]));
-        fluids.pressure[k] = found.water_pressure;
-        fluids.mobility[k] = hydraulics_[soil].mobility * found.state.permeability;
-        fluids.edge_mobility[k] = hydraulics_[soil].mobility * found.state.mean_permeability;
-        fluids.suction[k] = found.state.suction;
-        fluids.gas_pressure[k] = found.gas_pressure;
+        const SaturationTable::MixedState state = tables_[soil].mixed_at(effective[k], logit[k]);
+        fluids.pressure[k] = fluids.gas_pressure[k] - state.suction;
+        fluids.mobility[k] = hydraulics_[soil].mobility * state.permeability;
+        fluids.edge_mobility[k] = hydraulics_[soil].mobility * state.mean_permeability;
+        fluids.suction[k] = state.suction;
         fluids.gas_mobility[k] =
-            hydraulics_[soil].gas_mobility * std::max(found.state.gas_permeability, least_gas_permeability);
-        fluids.saturation[k] = 1 - found.gas_share;
-        fluids.effective_saturation[k] = std::clamp(table.effective(fluids.saturation[k]), 0.0, 1.0);
+            hydraulics_[soil].gas_mobility * std::max(state.gas_permeability, least_gas_permeability);
+        fluids.effective_saturation[k] = std::clamp(effective[k], 0.0, 1.0);
     }
 }
 
 /// psi and the volume of the gas, as of gas that is never thinner than next to none.
 template <Filling filling>
 void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidBlock& fluids) const {
-    const double specific = gas_.atmosphere / gas_.density, per_atmosphere = 1 / gas_.atmosphere;
+    const double specific = nodes_.gas.specific, per_atmosphere = 1 / gas_.atmosphere;
     const double density = gas_.density, gravity = nodes_.gravity;
     const double* __restrict mass = points_[gas_mass] + first;
     const double* __restrict y = points_[position_y] + first;
@@ -293,8 +293,8 @@ void ExplicitMixture<filling>::push_gas(size_t first, size_t count, const Spline
     FluidGiftBlock gift;
     for (size_t k = 0; k < count; ++k) {
         const double volume = fluids.gas_volume[k], push = volume * fluids.gas_potential[k];
-        gift[k].along_x[0] = gift[k].along_y[1] = gift[k].value[0] = push;
-        gift[k].along_x[2] = gift[k].along_y[3] = gift[k].value[2] = volume;
+        gift[k].slope[0] = gift[k].slope[1] = gift[k].value[0] = push;
+        gift[k].slope[2] = gift[k].slope[3] = gift[k].value[2] = volume;
         gift[k].value[1] = points_[solid_mass][first + k] * fluids.gas_mobility[k];
         gift[k].value[3] = points_[gas_mass][first + k];
         if constexpr (exchanges)  // as of air: Darcy's law is of the pressure, psi that of air
@@ -346,9 +346,10 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         if constexpr (has_gas) find_potential(first, count, fluids);
         if (yields_) {
             set_strength(soils_, points_, first, count, nodes_.grid.cell_size, material);
-            if constexpr (filling != Filling::saturated)
+            if constexpr (filling != Filling::saturated) {
                 add_apparent_cohesion(hydraulics_, points_, first, count, fluids.suction, fluids.effective_saturation,
                                       material);
+            }
             return_stresses(points_, first, count, material);
         }
         for (size_t k = 0; k < count; ++k) {
@@ -368,7 +369,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         if constexpr (exchanges) push_solutes(first, count, spline, fluids);
         if constexpr (has_gas) {
             push_gas(first, count, spline, fluids);
-            keep_pressures(first, count, fluids);
+            keep_fluids(first, count, fluids);
         }
     }
 }
@@ -530,7 +531,7 @@ void ExplicitMixture<filling>::fall_rain() {
 }
 
 /// Retention may hold water more stiffly than water is. Bishop's stress feels that; flow does as far as drag lets it, which it is slower by:
-/// half the step that would just be stable is size^2 n / (2 stiffness lambda).
+/// half the step that would just be stable is size^2 n / (2 stiffness lambda). Suction and the pressure of pores shared with gas add up.
 template <Filling filling>
 typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_stiffness(size_t p,
                                                                                           double porosity) const {
@@ -543,21 +544,15 @@ typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_
     const double borne = is_borne ? std::clamp(table.effective(filled), 0.0, 1.0) * stiffness : 0.0;
     const double mobility = hydraulics_[soil].mobility * table.at(filled).permeability;
     const double creep = 2 * stiffness * mobility / (porosity * nodes_.grid.cell_size);
-    return {std::max(bulk_modulus, borne),
-            std::max(bulk_modulus / water_.density, std::min(stiffness / water_.density, creep * creep))};
+    const auto both = [](double pores, double retention) {
+        return has_gas ? pores + retention : std::max(pores, retention);
+    };
+    return {both(bulk_modulus, borne),
+            both(bulk_modulus / water_.density, std::min(stiffness / water_.density, creep * creep))};
 }
 
-/// Of the gas's own wave, m2/s2: R T / M at any pressure, and less where the water gives way. An open edge stretches the gas's push: without drag, only
-/// steps of 0.6 of what the wave asks for are stable there; drag adds to the square of that its (step / 2) n / (lambda_g rho_g)-fold.
-template <Filling filling>
-double ExplicitMixture<filling>::gas_speed_squared(size_t p, double porosity) const {
-    const double own = gas_.atmosphere / gas_.density;
-    const double mobility = hydraulics_[static_cast<size_t>(points_.soil[p])].gas_mobility;
-    const double creep = 8 * gas_.atmosphere * mobility / (porosity * nodes_.grid.cell_size);
-    return std::clamp(creep * creep, own, 4 * own);
-}
-
-/// Of the points as they are: the square root of the sum of the waves' squares without drag, which bounds each.
+/// Of the points as they are: the square root of the sum of the waves' squares without drag, which bounds each. The gas's own is R T / M at
+/// any pressure, and less where the water gives way.
 template <Filling filling>
 void ExplicitMixture<filling>::find_wave_speed() {
     wave_speed_ = 0;
@@ -569,7 +564,7 @@ void ExplicitMixture<filling>::find_wave_speed() {
         const PoreStiffness pores = pore_stiffness(p, 1 - grains);
         const double fluid = pores.borne / (1 - grains);
         double squares = (frame + grains * grains * fluid) / solid_density + pores.flow_speed_squared;
-        if constexpr (has_gas) squares += gas_speed_squared(p, 1 - grains);
+        if constexpr (has_gas) squares += nodes_.gas.specific;
         wave_speed_ = std::max(wave_speed_, std::sqrt(squares));
     }
 }
@@ -631,11 +626,7 @@ double ExplicitMixture<filling>::gas_pressure(size_t point) const {
 
 template <Filling filling>
 double ExplicitMixture<filling>::saturation(size_t point) const {
-    if constexpr (has_gas) {
-        FluidBlock fluids{};
-        find_fluids(point, 1, fluids);
-        return fluids.saturation[0];
-    }
+    if constexpr (exchanges) return partition_of(point).saturation;
     return std::min(share_filled(point), 1.0);
 }
 

@@ -104,10 +104,9 @@ private:
     static constexpr bool has_gas = filling == Filling::three_phase || exchanges;
 
     struct FluidBlock {
-        BlockValues pressure, permeability, resistance, suction, effective_saturation;  // of the water
-        BlockValues mobility, edge_mobility, saturation, gas_pressure, gas_potential, gas_mobility,
-            gas_volume;                 // where gas moves
-        BlockValues vapour, dissolved;  // kg per metre of thickness, where fluids exchange them
+        BlockValues pressure, permeability, resistance, suction, effective_saturation;               // of the water
+        BlockValues mobility, edge_mobility, gas_pressure, gas_potential, gas_mobility, gas_volume;  // where gas moves
+        BlockValues saturation, vapour, dissolved;  // where fluids exchange them: -, kg per metre of thickness
     };
 
     struct PoreStiffness {
@@ -115,8 +114,6 @@ private:
         double flow_speed_squared;  // m2/s2, of the liquid through the skeleton
     };
     [[nodiscard]] PoreStiffness pore_stiffness(size_t p, double porosity) const;
-
-    [[nodiscard]] double gas_speed_squared(size_t p, double porosity) const;
 
     void arrange_points();
     /// Of the pores, by the point's water; above 1 it is pressed together.
@@ -136,7 +133,7 @@ private:
     void find_gas_weights(size_t first, size_t count, BlockValues& weight) const;
     void share_pores(size_t first, size_t count, FluidBlock& fluids) const;
     void find_potential(size_t first, size_t count, FluidBlock& fluids) const;
-    void keep_pressures(size_t first, size_t count, const FluidBlock& fluids);
+    void keep_fluids(size_t first, size_t count, const FluidBlock& fluids);
     void set_exchange(const ExplicitExchange& exchange);
     void find_partitions(size_t first, size_t count, FluidBlock& fluids) const;
     [[nodiscard]] Partition partition_of(size_t p) const;

@@ -107,8 +107,8 @@ void ExplicitMixture<Filling::exchange>::push_solutes(size_t first, size_t count
         const double wet = fluids.saturation[k], porosity = pores[k] / volume;
         const double dissolved = fraction_of(points_[dissolved_mass][p], liquid);
         const double vapour = fluids.gas_volume[k] * fraction_of(points_[vapour_mass][p], gas);
-        gift[k].along_x[0] = gift[k].along_y[1] = volume * dissolved;
-        gift[k].along_x[2] = gift[k].along_y[3] = gift[k].value[2] = vapour;
+        gift[k].slope[0] = gift[k].slope[1] = volume * dissolved;
+        gift[k].slope[2] = gift[k].slope[3] = gift[k].value[2] = vapour;
         gift[k].value[0] = points_[solid_mass][p] * dissolved;
         gift[k].value[1] = liquid * tortuosity(porosity * wet, wet);
         gift[k].value[3] = gas * tortuosity(porosity * (1 - wet), 1 - wet);

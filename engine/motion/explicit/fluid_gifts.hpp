@@ -5,9 +5,9 @@
 
 namespace talus {
 
-/// With the splines' slope along x and along y, and with their value.
+/// With the splines' slopes along x, along y, along x, along y, and with their value.
 struct FluidGift {
-    Quad along_x = Quad::Zero(), along_y = Quad::Zero(), value = Quad::Zero();
+    Quad slope = Quad::Zero(), value = Quad::Zero();
 };
 using FluidGiftBlock = std::array<FluidGift, block_size>;
 
@@ -20,8 +20,8 @@ inline void fill_gifts(size_t count, const double* y, const double* volume, cons
     for (size_t k = 0; k < count; ++k) {
         const double whole = pressure[k] + unit_weight * y[k];
         const double push = volume[k] * whole;
-        gift[k].along_x[0] = gift[k].along_y[1] = push;
-        gift[k].along_x[2] = gift[k].along_y[3] = volume[k];
+        gift[k].slope[0] = gift[k].slope[1] = push;
+        gift[k].slope[2] = gift[k].slope[3] = volume[k];
         gift[k].value[0] = mass[k] * whole;
         gift[k].value[1] = mass[k] * flow_mean[k];
         gift[k].value[2] = volume[k];
@@ -35,11 +35,10 @@ inline void scatter_gradients(const Grid& grid, size_t count, const SplineBlock&
     NodePatch<Quad, true> patch(gradients, grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
+        const SlopeWeights weight(spline, k);
         for (size_t j = 0; j < 3; ++j) {
-            const Quad by_slope = spline.value_y[j][k] * gift[k].along_x,
-                       by_value = spline.slope_y[j][k] * gift[k].along_y;
-            for (size_t i = 0; i < 3; ++i)
-                patch.node[j][i] += spline.slope_x[i][k] * by_slope + spline.value_x[i][k] * by_value;
+            const Quad row = weight.of_row[j] * gift[k].slope;
+            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += weight.of_column[i] * row;
         }
     }
 }

@@ -273,6 +273,17 @@ GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt)
     return answer;
 }
 
+/// Gas that would cross more than half a cell in a step feels more drag, so that no point loses more of it than it holds: at that speed, more than half of
+/// its wave's, Darcy's law is none.
+void GasAnswer::choke(const NodeVector& relative_velocity, double most) {
+    const double needed = std::sqrt(dot(relative_velocity, relative_velocity)) / most - 1;
+    if (needed <= drag) return;
+    const double share = (1 + drag) / (1 + needed);
+    drag = needed;
+    moved *= share;
+    evened *= share;
+}
+
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
@@ -297,10 +308,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     const double moved = liquid_mass / (1 + drag);
     double coupled = mass + moved * drag;
     [[maybe_unused]] GasAnswer answer;
-    if constexpr (has_gas) {
-        answer = answer_of_gas(node, dt);
-        coupled += answer.moved * answer.drag;
-    }
+    if constexpr (has_gas) answer = answer_of_gas(node, dt);
     NodeVector &solid = velocity[node], &liquid = liquid_velocity[node];
     const NodeVector outwards{sums.edge_x, sums.edge_y};
     const auto move = [&](double NodeVector::*c, const NodeVector& pushed, const NodeVector& gas_pushed) {
@@ -321,7 +329,14 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
             gas.flux[node].*c = answer.density * (gas.velocity[node].*c - solid.*c) - answer.evened * gas_pushed.*c;
         }
     };
-    const auto flow = [&](const NodeVector& pushed, const NodeVector& gas_pushed) {
+    const auto flow = [&](const NodeVector& pushed, const NodeVector& gas_pushed, double stretch) {
+        if constexpr (has_gas) {
+            const NodeVector& start = gas.velocity[node];
+            answer.choke({start.x + answer.response * gas_pushed.x - solid.x,
+                          start.y + answer.response * gas_pushed.y - solid.y},
+                         0.5 * grid.cell_size / (dt * stretch));
+            coupled += answer.moved * answer.drag;
+        }
         move(&NodeVector::x, pushed, gas_pushed);
         move(&NodeVector::y, pushed, gas_pushed);
     };
@@ -333,7 +348,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
         gas_inner = {gas_sums.push_x - answer.push * gas_outwards.x, gas_sums.push_y - answer.push * gas_outwards.y};
     }
     if (!is_at_edge(node)) {
-        flow(inner, gas_inner);
+        flow(inner, gas_inner, 1);
         returned[node] = dot(flux[node], outwards);
         if constexpr (has_gas) gas.returned[node] = dot(gas.flux[node], gas_outwards);
         return;
@@ -341,12 +356,12 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     const GroundEdge edge(outwards, mean.volume / cell_volume(), grid.cell_size);
     const double edge_head = gravity * liquid_density * (height_of(node) + edge.height);
     if (immersed) {
-        flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y}, {});
+        flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y}, {}, 1);
         seepage += dt * dot(flux[node], outwards);
         return;
     }
     const NodeVector pushed = edge.stretched(inner), gas_pushed = edge.stretched(gas_inner);
-    flow(pushed, gas_pushed);
+    flow(pushed, gas_pushed, 1 + edge.more);
     flux[node] = edge.stretched(flux[node]);
     returned[node] = dot(flux[node], outwards);
     if constexpr (has_gas) {
@@ -371,7 +386,8 @@ double GridMixture<has_gas, exchanges>::wetted_share(size_t node) const {
 
 /// The atmosphere draws gas in or out by the difference of psi over the distance to the edge, besides what the gas's momentum carries. k_rg on the way is
 /// the mean of the node's and the edge's: there it is less, as the suction is, by the share of what the edge can take that rain offers, and none
-/// where that is all.
+/// where that is all. The difference is that of the step's end, psi rising by R T / M times the gain's share of the gas: where drag is weak the edge
+/// fills within a step, and by the start's would fill beyond the atmosphere's pressure.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
                                               const NodeVector& pushed) {
@@ -383,8 +399,9 @@ void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const Grou
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
     const double carried = dot(gas.flux[node], outwards) - driven * dot(edge.stretched(pushed), outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
-    const double drawn = outer_conductance * edge.length * (edge_push - answer.push) / edge.distance;
-    const double inflow = content * (drawn - carried);
+    const double opening = outer_conductance * edge.length / edge.distance;
+    const double filling = dt * content * opening * gas.specific / gas.means[node].mass;
+    const double inflow = content * (opening * (edge_push - answer.push) - carried) / (1 + filling);
     gas.returned[node] += inflow;
     gas.escaped -= dt * inflow;
 }

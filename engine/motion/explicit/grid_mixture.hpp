@@ -84,6 +84,7 @@ struct NodeGas {
         rates;  ///< x, gain that points share by weight, kg/(m2 s); y, loss that they share by their gas, 1/s
     std::vector<NodeVector> evening;  ///< of the points' psi: x, kg/s per weight and J/kg; y, times the node's
     double density = 0;               ///< at no gauge pressure, kg/m3
+    double specific = 0;              ///< R T / M, J/kg
     double escaped = 0;  ///< through the surface in the steps ended, kg; with exchange, air alone, in the liquid too
 
     void resize(size_t nodes);
@@ -101,6 +102,8 @@ struct GasAnswer {
     double moved = 0;     ///< mass / (1 + drag), kg
     double density = 0;   ///< kg/m3
     double evened = 0;    ///< flux per force that evening out does, kg/(m2 s)
+
+    void choke(const NodeVector& relative_velocity, double most);
 };
 
 /// Of a column of the grid: the edge that faces up.

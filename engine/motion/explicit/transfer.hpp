@@ -64,6 +64,20 @@ private:
     int32_t first_;
 };
 
+/// Weights of the nine nodes of a point whose products are the slopes of the splines, along x, along y, along x, along y.
+struct SlopeWeights {
+    Quad of_column[3], of_row[3];
+
+    SlopeWeights(const SplineBlock& spline, size_t k) {
+        for (size_t i = 0; i < 3; ++i) {
+            const double slope_x = spline.slope_x[i][k], value_x = spline.value_x[i][k];
+            const double slope_y = spline.slope_y[i][k], value_y = spline.value_y[i][k];
+            of_column[i] = Quad(slope_x, value_x, slope_x, value_x);
+            of_row[i] = Quad(value_y, slope_y, value_y, slope_y);
+        }
+    }
+};
+
 /// Gradient of a velocity at points, d v_x / d x, d v_x / d y, ..., 1/s.
 struct GradientBlock {
     BlockValues xx, xy, yx, yy;
@@ -115,11 +129,12 @@ inline void gather_divergence(const Grid& grid, const std::vector<NodeVector>& f
     NodePatch<Pair, false> patch(&field.data()->x, grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
+        const SlopeWeights weight(spline, k);
         Pair sum = Pair::Zero();
         for (size_t j = 0; j < 3; ++j) {
-            const Pair along(spline.value_y[j][k], spline.slope_y[j][k]);
-            for (size_t i = 0; i < 3; ++i)
-                sum += along * Pair(spline.slope_x[i][k], spline.value_x[i][k]) * patch.node[j][i];
+            sum += weight.of_row[j].head<2>() * (weight.of_column[0].head<2>() * patch.node[j][0] +
+                                                 weight.of_column[1].head<2>() * patch.node[j][1] +
+                                                 weight.of_column[2].head<2>() * patch.node[j][2]);
         }
         divergence[k] = sum[0] + sum[1];
     }
@@ -166,16 +181,14 @@ inline void gather_divergences(const Grid& grid, const std::vector<NodePairOfVec
     NodePatch<Quad, false> patch(&field.data()->liquid.x, grid, spline.first[0]);
     for (size_t k = 0; k < count; ++k) {
         patch.move_to(spline.first[k]);
-        Quad along_x = Quad::Zero(), along_y = Quad::Zero();
+        const SlopeWeights weight(spline, k);
+        Quad sum = Quad::Zero();
         for (size_t j = 0; j < 3; ++j) {
-            const Quad &v0 = patch.node[j][0], &v1 = patch.node[j][1], &v2 = patch.node[j][2];
-            along_x += spline.value_y[j][k] *
-                       (spline.slope_x[0][k] * v0 + spline.slope_x[1][k] * v1 + spline.slope_x[2][k] * v2);
-            along_y += spline.slope_y[j][k] *
-                       (spline.value_x[0][k] * v0 + spline.value_x[1][k] * v1 + spline.value_x[2][k] * v2);
+            sum += weight.of_row[j] * (weight.of_column[0] * patch.node[j][0] + weight.of_column[1] * patch.node[j][1] +
+                                       weight.of_column[2] * patch.node[j][2]);
         }
-        liquid[k] = along_x[0] + along_y[1];
-        gas[k] = along_x[2] + along_y[3];
+        liquid[k] = sum[0] + sum[1];
+        gas[k] = sum[2] + sum[3];
     }
 }
 
