@@ -17,22 +17,23 @@ constexpr double gaining = 0.5;      // and nothing where it leaves more than th
 
 // What a whole step to the surface's kink may cost of the residuals, and how often.
 constexpr double most_growth = 1.1;
-constexpr int most_turns = 10;
+constexpr int most_fillings = 10;
 
-// Whether a node came to the surface's kink, on whose other side its slopes are others.
-bool turns(std::span<const double> pressure, std::span<const double> reached) {
+// Whether a node fills up to the surface's kink, on whose other side its slopes are others.
+bool fills(std::span<const double> pressure, std::span<const double> reached) {
     for (size_t i = 0; i < pressure.size(); ++i)
-        if ((pressure[i] > 0) != (reached[i] > 0)) return true;
+        if (pressure[i] <= 0 && reached[i] > 0) return true;
     return false;
 }
 
-// Infinite where a node turns.
+// Infinite where a node came to the surface's kink.
 double largest_relative_change(std::span<const double> pressure, std::span<const double> change,
                                std::span<const double> reached) {
-    if (turns(pressure, reached)) return std::numeric_limits<double>::infinity();
     double largest = 0;
-    for (size_t i = 0; i < pressure.size(); ++i)
+    for (size_t i = 0; i < pressure.size(); ++i) {
+        if ((pressure[i] > 0) != (reached[i] > 0)) return std::numeric_limits<double>::infinity();
         largest = std::max(largest, std::abs(change[i]) / (1.0 + std::abs(pressure[i])));
+    }
     return largest;
 }
 
@@ -84,7 +85,7 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
     double error = residual(t, step, target, pressure, beyond_);
     const auto is_met = [&] { return error <= accuracy.node && std::abs(missing_) <= accuracy.sum; };
     const auto is_wished = [&] { return is_met() && astray_ <= accuracy.pressure; };
-    int turn_count = 0;
+    int fillings = 0;
     bool is_stale = factorised_step_ <= 0 || std::abs(step / factorised_step_ - 1.0) > like_steps;
     for (int iteration = 0; iteration < most_iterations && !is_wished(); ++iteration) {
         if (!std::isfinite(error)) return false;
@@ -103,9 +104,9 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
             trial_error = residual(t, step, target, trial_, trial_beyond_);
             if (merit_ < merit) break;
             // A filling surface node stops where the pond begins. It gains nothing on the way there, as it holds all its water already.
-            const bool may_turn = is_fresh && halving == 0 && !was_met && turn_count < most_turns;
-            if (may_turn && merit_ < most_growth * merit && turns(pressure, trial_)) {
-                ++turn_count;
+            const bool may_fill = is_fresh && halving == 0 && !was_met && fillings < most_fillings;
+            if (may_fill && merit_ < most_growth * merit && fills(pressure, trial_)) {
+                ++fillings;
                 break;
             }
         }
@@ -120,7 +121,7 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
         std::copy(trial_.begin(), trial_.end(), pressure.begin());
         std::swap(beyond_, trial_beyond_);
         error = trial_error;
-        if (is_round_off && merit_ > gaining * merit) return std::isfinite(error);
+        if (is_round_off && length == 1.0 && merit_ > gaining * merit) return std::isfinite(error);
     }
     return is_met();
 }
