@@ -1,7 +1,7 @@
 """Closed isothermal box of rigid soil with water, vapour, air and dissolved air: where it comes to rest.
 
 Masses as in docs/theory.md: water n (S_l rho_l omega_w + S_g rho_v), air n (S_g rho_a + S_l rho_d), with
-  rho_l = rho_0 exp(p_g / K_l) of the whole liquid, omega_w = 1 - rho_d / rho_l
+  rho_l = rho_0 exp(p_l / K_l) of the whole liquid, omega_w = 1 - rho_d / rho_l
   Kelvin: rho_v = rho_sat exp(-s M_w / (rho_l R T)), s = p_g - p_l of the retention curve
   Henry:  rho_d = M_a H p_a, p_a the air's partial pressure, H in mol/(m3 Pa)
   ideal gases: p_atm + p_g = R T (rho_v / M_w + rho_a / M_a)
@@ -42,9 +42,9 @@ class Box:
         m = 1 - 1 / self.exponent
         return numpy.expm1(-numpy.log(saturation) / m) ** (1 / self.exponent) / self.alpha
 
-    def density(self, gas_pressure):
-        """Of the liquid, kg/m3; gauge Pa. Suction does not stretch it."""
-        return self.liquid_density * numpy.exp(gas_pressure / self.liquid_bulk)
+    def density(self, liquid_pressure):
+        """Of the liquid, kg/m3; gauge Pa."""
+        return self.liquid_density * numpy.exp(liquid_pressure / self.liquid_bulk)
 
 
 @dataclasses.dataclass
@@ -55,6 +55,11 @@ class State:
     dissolved: float  # kg of air per m3 of liquid
 
 
+def liquid_pressure(box, state):
+    """Pa, gauge."""
+    return state.gas_pressure - box.suction(state.saturation)
+
+
 def air_density(box, state):
     """kg per m3 of gas."""
     return box.air_molar * ((box.atmosphere + state.gas_pressure) / box.thermal - state.vapour / box.water_molar)
@@ -62,7 +67,7 @@ def air_density(box, state):
 
 def masses(box, state):
     """Water and air, kg per m3 of ground."""
-    liquid = box.density(state.gas_pressure)
+    liquid = box.density(liquid_pressure(box, state))
     wet, dry = box.porosity * state.saturation, box.porosity * (1 - state.saturation)
     return wet * (liquid - state.dissolved) + dry * state.vapour, wet * state.dissolved + dry * air_density(box, state)
 
@@ -70,7 +75,7 @@ def masses(box, state):
 def at_equilibrium(box, saturation, gas_pressure):
     """The state of Kelvin and Henry at a saturation and a gas pressure (gauge, Pa)."""
     suction = box.suction(saturation)
-    liquid = box.density(gas_pressure)
+    liquid = box.density(gas_pressure - suction)
     vapour = box.saturated_vapour * numpy.exp(-suction * box.water_molar / (liquid * box.thermal))
     air_pressure = box.atmosphere + gas_pressure - vapour * box.thermal / box.water_molar
     return State(saturation, gas_pressure, vapour, box.air_molar * box.henry * air_pressure)

@@ -198,7 +198,7 @@ def check_gas():
 
 def box_masses(box, state):
     """Water and air, kg per m3 of ground, component by component: liquid, gas."""
-    liquid = box.liquid_density * numpy.exp(state.gas_pressure / box.liquid_bulk)
+    liquid = box.liquid_density * numpy.exp((state.gas_pressure - box.suction(state.saturation)) / box.liquid_bulk)
     fraction = state.dissolved / liquid
     volume = box.porosity * numpy.array([state.saturation, 1 - state.saturation])
     moles = (box.atmosphere + state.gas_pressure) / box.thermal - state.vapour / box.water_molar
@@ -210,7 +210,7 @@ def check_box():
     rest = exchange_box.equilibrium(box, start)
     before, after = numpy.array(exchange_box.masses(box, start)), numpy.array(exchange_box.masses(box, rest))
     yield "box: masses", max(abs(after / before - 1)), 1e-13
-    suction, liquid = box.suction(rest.saturation), box.density(rest.gas_pressure)
+    suction, liquid = box.suction(rest.saturation), box.density(exchange_box.liquid_pressure(box, rest))
     humidity = rest.vapour / box.saturated_vapour
     potential = box.thermal / box.water_molar * numpy.log(humidity) * liquid + suction
     yield "box: Kelvin, Pa of suction over Pa", abs(potential / suction), 1e-9
