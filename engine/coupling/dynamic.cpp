@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace talus {
 namespace {
@@ -209,10 +210,9 @@ void fill_with_gas(const Scene& scene, FreePoints& points) {
 }
 
 /// The same of moist air over water with dissolved air, in equilibrium.
-void fill_with_moist_gas(const Scene& scene, const FluidExchange& fluids, FreePoints& points) {
+void fill_with_moist_gas(const Scene& scene, std::span<const SaturationTable> tables, const FluidExchange& fluids,
+                         FreePoints& points) {
     for (size_t f = wet_fields; f < point_fields; ++f) points.field[f].assign(points.count, 0.0);
-    std::vector<SaturationTable> tables;
-    for (const Soil& soil : scene.soils) tables.emplace_back(soil.hydraulics, scene.water.bulk_modulus);
     for (size_t p = 0; p < points.count; ++p) {
         const double room = room_for_gas(scene, points, p), liquid = points[water_mass][p] / scene.water.density;
         const SaturationTable& table = tables[static_cast<size_t>(points.soil[p])];
@@ -320,7 +320,7 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     const ExplicitGas gas{scene.gas.density, scene.gas.atmosphere};
     if (scene.physics.exchange) {
         const ExplicitExchange exchange = explicit_exchange(scene);
-        fill_with_moist_gas(scene, exchange.fluids, seeded.points);
+        fill_with_moist_gas(scene, tables, exchange.fluids, seeded.points);
         return Motion(std::in_place_type<Exchange>, cell_size, walls, scene.gravity, explicit_soils(scene),
                       std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads, gas,
                       exchange);

@@ -2,6 +2,7 @@
 #include "capi_host.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -98,6 +99,26 @@ struct Impatient {
         return ++self->calls == self->limit ? 1 : 0;
     }
 };
+
+/// An engine after two steps, the second of which (s) was cancelled first: its fields are those of a twin that was left alone, and it has its water.
+host::Engine undone_and_done_again(const std::string& text, double second, std::initializer_list<const char*> fields,
+                                   Impatient& impatient) {
+    talus_options options = TALUS_OPTIONS_INIT;
+    options.progress = Impatient::progress;
+    options.progress_user = &impatient;
+    host::Engine engine = host::engine(text.c_str(), &options);
+    const host::Engine twin = host::engine(text.c_str());
+    talus_step_report report = TALUS_STEP_REPORT_INIT, plain = TALUS_STEP_REPORT_INIT;
+    REQUIRE(talus_engine_step(engine.get(), 0.1, &report) == TALUS_OK);
+    impatient.limit = impatient.calls + 3;
+    CHECK(talus_engine_step(engine.get(), second, &report) == TALUS_CANCELLED);
+    REQUIRE(talus_engine_step(engine.get(), second, &report) == TALUS_OK);
+    REQUIRE(talus_engine_step(twin.get(), 0.1, &plain) == TALUS_OK);
+    REQUIRE(talus_engine_step(twin.get(), second, &plain) == TALUS_OK);
+    for (const char* field : fields) CHECK(read(engine, field) == read(twin, field));
+    CHECK(std::abs(report.water_residual) < 1e-12 * report.water_stored);
+    return engine;
+}
 
 }  // namespace
 
@@ -359,19 +380,7 @@ TEST_CASE("C API: gas that moves has a pressure of its own, and an undone step l
     text.replace(text.find("\"regime\""), 0, "\"gas\": true, ");
     text.replace(text.find("\"water\": {"), 0, "\"gas\": {\"viscosityRatio\": 0.02}, ");
     Impatient impatient;
-    talus_options options = TALUS_OPTIONS_INIT;
-    options.progress = Impatient::progress;
-    options.progress_user = &impatient;
-    const host::Engine engine = host::engine(text.c_str(), &options), twin = host::engine(text.c_str());
-    talus_step_report report = TALUS_STEP_REPORT_INIT, plain = TALUS_STEP_REPORT_INIT;
-    REQUIRE(talus_engine_step(engine.get(), 0.1, &report) == TALUS_OK);
-    impatient.limit = impatient.calls + 3;
-    CHECK(talus_engine_step(engine.get(), 0.2, &report) == TALUS_CANCELLED);
-    REQUIRE(talus_engine_step(engine.get(), 0.2, &report) == TALUS_OK);
-    REQUIRE(talus_engine_step(twin.get(), 0.1, &plain) == TALUS_OK);
-    REQUIRE(talus_engine_step(twin.get(), 0.2, &plain) == TALUS_OK);
-    CHECK(read(engine, "gas_pressure") == read(twin, "gas_pressure"));
-    CHECK(std::abs(report.water_residual) < 1e-12 * report.water_stored);
+    const host::Engine engine = undone_and_done_again(text, 0.2, {"gas_pressure"}, impatient);
     const std::vector<double> pressure = read(engine, "point_pressure"), gas = read(engine, "gas_pressure"),
                               suction = read(engine, "suction"), net = read(engine, "net_stress"),
                               total = read(engine, "total_stress");
@@ -395,20 +404,8 @@ TEST_CASE(
     text.replace(text.find("\"regime\""), 0, "\"gas\": true, \"exchange\": true, ");
     text.replace(text.find("\"water\": {"), 0, "\"gas\": {\"humidity\": 0.3}, ");
     Impatient impatient;
-    talus_options options = TALUS_OPTIONS_INIT;
-    options.progress = Impatient::progress;
-    options.progress_user = &impatient;
-    const host::Engine engine = host::engine(text.c_str(), &options), twin = host::engine(text.c_str());
-    talus_step_report report = TALUS_STEP_REPORT_INIT, plain = TALUS_STEP_REPORT_INIT;
-    REQUIRE(talus_engine_step(engine.get(), 0.1, &report) == TALUS_OK);
-    impatient.limit = impatient.calls + 3;
-    CHECK(talus_engine_step(engine.get(), 0.1, &report) == TALUS_CANCELLED);
-    REQUIRE(talus_engine_step(engine.get(), 0.1, &report) == TALUS_OK);
-    REQUIRE(talus_engine_step(twin.get(), 0.1, &plain) == TALUS_OK);
-    REQUIRE(talus_engine_step(twin.get(), 0.1, &plain) == TALUS_OK);
-    for (const char* field : {"gas_pressure", "relative_humidity", "dissolved_air"})
-        CHECK(read(engine, field) == read(twin, field));
-    CHECK(std::abs(report.water_residual) < 1e-12 * report.water_stored);
+    const host::Engine engine =
+        undone_and_done_again(text, 0.1, {"gas_pressure", "relative_humidity", "dissolved_air"}, impatient);
     const std::vector<double> suction = read(engine, "suction"), humidity = read(engine, "relative_humidity"),
                               dissolved = read(engine, "dissolved_air");
     for (size_t p = 0; p < suction.size(); ++p) {
