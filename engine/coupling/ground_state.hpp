@@ -40,7 +40,7 @@ struct GroundState {
     std::vector<double> pore_volume_rate;  ///< per portion, m3/s, over the last exchange: the next one's prediction
     std::vector<double> pore_stress_rate;  ///< per portion, Pa/s, likewise
     double exchange_step = 0;              ///< s, what the next exchange between flow and motion would take; 0: unknown
-    bool exchange_was_cut = false;         ///< a longer one was given up last
+    double given_up_exchange = 0;          ///< s, length of the one given up last, until one as long is agreed on
     bool settles_jointly = false;          ///< flow and skeleton, where the skeleton alone found no equilibrium last
     bool equilibrium_lost = false;         ///< the skeleton stands as it was when it failed
     bool rests = false;                    ///< it failed, moved and came to rest

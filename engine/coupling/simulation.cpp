@@ -37,7 +37,7 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
         const auto watched = [&](double t) { return cancelled((state_.time + t - from) / whole); };
         const Exchange result = exchange(duration, duration < failure_window * whole, watched);
         if (result != Exchange::agreed && skeleton_moves()) equilibrium_->reject();
-        state_.exchange_was_cut = result != Exchange::agreed;
+        if (result != Exchange::agreed) state_.given_up_exchange = duration;
         switch (result) {
             case Exchange::agreed: state_.time = is_last ? stop : state_.time + duration; break;
             case Exchange::cancelled: return false;
