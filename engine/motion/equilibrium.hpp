@@ -112,6 +112,7 @@ private:
     double unbalance_elastically();
     void set_residual();
     double relative_residual();
+    bool is_balanced();
     void predict(double wanted, EquilibriumOutcome& outcome);
     bool accelerate(EquilibriumOutcome& outcome);
     bool creep(int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion = nullptr);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 
@@ -62,6 +63,21 @@ double Equilibrium::relative_residual() {
         reaction_[i] = equations_.number[i] < 0 ? internal_[i] - external_[i] : 0.0;
     const double unbalanced = norm(residual_);
     return unbalanced == 0 ? 0 : unbalanced / std::max(norm(external_), norm(reaction_));
+}
+
+/// Whether the loads are balanced as well as displacements can. Stiff ground on soft ground moves far and strains little: there the last digit of
+/// the displacement may be more of a force than the tolerance lets stand, at most eps |K| |u| (Oettli & Prager, Numer. Math. 6, 1964).
+bool Equilibrium::is_balanced() {
+    if (relative_residual() <= tolerance) return true;
+    const SparseMatrix& matrix = elastic_.matrix;
+    std::vector<double> force(residual_.size(), 0.0);
+    for (size_t j = 0; j < force.size(); ++j) {
+        const double displacement = std::abs(increment_[static_cast<size_t>(equations_.freedom[j])]);
+        for (auto k = static_cast<size_t>(matrix.column_start[j]); k < static_cast<size_t>(matrix.column_start[j + 1]);
+             ++k)
+            force[static_cast<size_t>(matrix.row[k])] += std::abs(matrix.value[k]) * displacement;
+    }
+    return norm(residual_) <= std::numeric_limits<double>::epsilon() * norm(force);
 }
 
 /// Solves for a skeleton that does not yield, until the unbalanced force has fallen by the factor wanted, or below the tolerance.
@@ -141,7 +157,7 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Compani
         }
         last_direction_ = direction_;
     }
-    return relative_residual() <= tolerance && agrees();
+    return is_balanced() && agrees();
 }
 
 /// Goes along the direction, which is cut to the part gone, until the unbalanced force does hardly less work on it than at the start

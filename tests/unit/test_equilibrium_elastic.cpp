@@ -36,3 +36,18 @@ TEST_CASE("equilibrium: a column under gravity and pore pressure carries its exa
     }
     CHECK(equilibrium.reaction()[0] == doctest::Approx(2000 * 9.81 * 10).epsilon(1e-10));
 }
+
+TEST_CASE("equilibrium: rock that rides on soft ground is balanced as far as displacements can tell") {
+    // The last digit of 0.1 m is 2 mPa of strain in a modulus of 4e16 Pa over a metre.
+    Mesh mesh = column_mesh(20, 40);
+    std::fill(mesh.cell_soil.begin() + 10, mesh.cell_soil.end(), 1);
+    Points points = unstressed_points(mesh);
+    for (size_t p = points.soil.size() / 2; p < points.soil.size(); ++p) points.soil[p] = 1;
+    std::vector<uint8_t> prescribed(mesh.position.size(), 0);
+    prescribed[0] = 1;
+    Equilibrium equilibrium(mesh, points, {elastic_solid(7e7, 0.47), elastic_solid(2.6e13, 0.4999)}, prescribed, 9.81);
+    LoadArrays loads(mesh, points);
+    std::fill(loads.density.begin(), loads.density.end(), 2000.0);
+    CHECK(equilibrium.solve(loads.view()).status == EquilibriumStatus::converged);
+    CHECK(points.skeleton_stress[8 * 15 + 1] == doctest::Approx(-2000 * 9.81 * 9).epsilon(1e-5));
+}
