@@ -88,6 +88,25 @@ TEST_CASE("friction slows a block as Coulomb has it") {
     CHECK(momentum / mass == doctest::Approx(2 - 0.3 * 9.81 * 0.4).epsilon(0.01));
 }
 
+TEST_CASE("ground that rubs on both walls of a corner gains no energy there") {
+    const double cell_size = 0.25, poisson = 0.45;
+    const Walls walls{{WallKind::friction, 0, 0.7}, {WallKind::friction, 2, 0.55}, {WallKind::friction, 0, 0.035}};
+    FreePoints points = block_of_points(cell_size, 0, 0, 8, 4);
+    for (size_t p = 0; p < points.count; ++p) {
+        const double vertical = -block_density * 9.81 * (1 - points[position_y][p]);
+        points[stress_yy][p] = vertical;
+        points[stress_xx][p] = points[stress_zz][p] = poisson / (1 - poisson) * vertical;
+    }
+    ExplicitMotion motion(cell_size, walls, 9.81, {{elasticity(1e7, poisson)}}, std::move(points), 1);
+    const auto energy = [&] {
+        const Energies parts = motion.energies();
+        return parts.kinetic + parts.elastic + parts.potential;
+    };
+    const double start = energy(), dt = motion.critical_step();
+    for (int64_t step = 1; step <= 500; ++step) motion.step(dt, step == 500);
+    CHECK(energy() - start < 0.02 * motion.energies().elastic);
+}
+
 TEST_CASE("ground at rest is held until something comes near, and nothing else is changed by that") {
     const double cell_size = 0.1;
     const auto collide = [&](double rest_speed, int32_t threads, bool is_put_back) {

@@ -1,9 +1,16 @@
 #include "motion/explicit/grid_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace talus {
+namespace {
+
+double slowed(double speed, double by) { return std::copysign(std::max(std::abs(speed) - by, 0.0), speed); }
+
+}  // namespace
+
 /// Beyond a wall the nodes move as the mirrored ground would, so that what is interpolated on the wall is zero across it, and along it
 /// where it is fixed.
 void GridMotion::mirror() {
@@ -51,10 +58,35 @@ void GridMotion::end_step(double dt) {
 }
 
 void GridMotion::slide(bool with_friction) {
+    for_each_corner([&](const Corner& corner) { meet(corner, with_friction); });
     for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
         if (wall.kind != WallKind::friction) return;
         for_each_pair(wall, axis, inwards, [&](NodePair nodes) { meet(wall, axis, -inwards, nodes, with_friction); });
     });
+}
+
+/// Ground that runs into both walls of a corner: wall after wall, what the one leaves would run into the other. Its four nodes get the velocity and
+/// its mirror images that the mirrored ground would have, less what the friction of either wall takes off along it; the walls leave that alone.
+void GridMotion::meet(const Corner& corner, bool with_friction) {
+    constexpr std::array<Mirror, 4> mirrors{{{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+    double mass = 0;
+    NodeVector sum, mirrored, inside;  // of momentum; of its mirror images inside; of mass times the mirror
+    for (size_t k = 0; k < 4; ++k) {
+        const double own = momentum[corner.nodes[k]].mass;
+        const NodeVector& v = velocity[corner.nodes[k]];
+        mass += own;
+        sum = {sum.x + own * v.x, sum.y + own * v.y};
+        mirrored = {mirrored.x + own * mirrors[k].x * v.x, mirrored.y + own * mirrors[k].y * v.y};
+        inside = {inside.x + own * mirrors[k].x, inside.y + own * mirrors[k].y};
+    }
+    if (!(mass > 0) || corner.inwards_x * sum.x >= 0 || corner.inwards_y * sum.y >= 0) return;  // it leaves a wall
+    NodeVector common{mirrored.x / mass, mirrored.y / mass};
+    const double impulse_x = std::abs(inside.x * common.x - sum.x), impulse_y = std::abs(inside.y * common.y - sum.y);
+    if (with_friction) {
+        common.x = slowed(common.x, corner.level->friction * impulse_y / mass);
+        common.y = slowed(common.y, corner.side->friction * impulse_x / mass);
+    }
+    for (size_t k = 0; k < 4; ++k) velocity[corner.nodes[k]] = {mirrors[k].x * common.x, mirrors[k].y * common.y};
 }
 
 /// Ground that runs into a wall: the two nodes get the one velocity that the mirrored ground would have, and along the wall the momentum
@@ -71,8 +103,7 @@ void GridMotion::meet(const Wall& wall, size_t axis, double outwards, NodePair n
     const double speed = (mass_inside * in.*across - mass_beyond * out.*across) / mass;
     const double impulse = std::abs((mass_inside - mass_beyond) * speed - pushed);
     double sliding = (mass_inside * in.*along + mass_beyond * out.*along) / mass;
-    if (with_friction)
-        sliding = std::copysign(std::max(std::abs(sliding) - wall.friction * impulse / mass, 0.0), sliding);
+    if (with_friction) sliding = slowed(sliding, wall.friction * impulse / mass);
     in.*across = speed;
     out.*across = -speed;
     in.*along = out.*along = sliding;

@@ -88,6 +88,7 @@ struct GridMotion : WalledGrid {
 private:
     void mirror();
     void slide(bool with_friction);
+    void meet(const Corner& corner, bool with_friction);
     void meet(const Wall& wall, size_t axis, double outwards, NodePair nodes, bool with_friction);
 };
 

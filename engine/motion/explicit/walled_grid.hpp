@@ -3,6 +3,7 @@
 
 #include "background/grid.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -35,6 +36,13 @@ struct NodePair {
     size_t inside, beyond;
 };
 
+/// Where two walls meet that rub.
+struct Corner {
+    const Wall *side, *level;      ///< left or right; base or top
+    int32_t inwards_x, inwards_y;  ///< the directions in which the ground lies, 1 or -1
+    std::array<size_t, 4> nodes;   ///< inside, beyond the side, beyond the level, beyond both
+};
+
 /// What the components of a vector beyond a wall are times, to be seen in the mirror.
 struct Mirror {
     double x, y;
@@ -54,6 +62,12 @@ struct WalledGrid {
     template <class Use>
     void for_each_node(const Use& use) const;
 
+    /// The row or column of nodes inside a wall; -1 where no point is near.
+    [[nodiscard]] int32_t line_at(const Wall& wall, size_t axis, int32_t inwards) const {
+        const int32_t line = grid.cell_of(wall.place + 0.5 * inwards * grid.cell_size, axis);
+        return line < 1 || line + 1 >= grid.cells[axis] ? -1 : line;
+    }
+
     /// use(nodes) for the pairs along a wall; `inwards` is the direction of the axis in which the ground lies, 1 or -1.
     template <class Use>
     void for_each_pair(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const;
@@ -61,6 +75,10 @@ struct WalledGrid {
     /// use(wall, axis, inwards)
     template <class Use>
     void for_each_wall(const Use& use) const;
+
+    /// use(corner) for every two walls with friction that meet within reach of the points.
+    template <class Use>
+    void for_each_corner(const Use& use) const;
 
     /// use(nodes, mirror) for every pair that a roller or a fixed wall mirrors, wall after wall: in a corner, sums go from node to node.
     template <class Use>
@@ -84,8 +102,8 @@ void WalledGrid::for_each_node(const Use& use) const {
 template <class Use>
 void WalledGrid::for_each_pair(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const {
     const auto stride = static_cast<size_t>(grid.cells[0]);
-    const int32_t line = grid.cell_of(wall.place + 0.5 * inwards * grid.cell_size, axis);
-    if (line < 1 || line + 1 >= grid.cells[axis]) return;  // no point is near
+    const int32_t line = line_at(wall, axis, inwards);
+    if (line < 0) return;
     const auto inside = static_cast<size_t>(line);
     if (axis == 1) {
         for (auto column = static_cast<size_t>(spans[inside].first); column < static_cast<size_t>(spans[inside].last);
@@ -106,6 +124,30 @@ void WalledGrid::for_each_wall(const Use& use) const {
     use(walls.right, size_t{0}, -1);
     use(walls.base, size_t{1}, 1);
     use(walls.top, size_t{1}, -1);
+}
+
+template <class Use>
+void WalledGrid::for_each_corner(const Use& use) const {
+    const auto stride = static_cast<size_t>(grid.cells[0]);
+    for_each_wall([&](const Wall& side, size_t side_axis, int32_t inwards_x) {
+        if (side.kind != WallKind::friction || side_axis != 0) return;
+        for_each_wall([&](const Wall& level, size_t level_axis, int32_t inwards_y) {
+            if (level.kind != WallKind::friction || level_axis != 1) return;
+            const int32_t row = line_at(level, 1, inwards_y);
+            if (row < 0) return;
+            const auto first = static_cast<size_t>(row) * stride,
+                       beyond = static_cast<size_t>(row - inwards_y) * stride;
+            for_each_pair(side, 0, inwards_x, [&](NodePair beside) {
+                if (beside.inside / stride != static_cast<size_t>(row)) return;
+                const size_t inside = beside.inside - first, outside = beside.beyond - first;
+                use(Corner{&side,
+                           &level,
+                           inwards_x,
+                           inwards_y,
+                           {beside.inside, beside.beyond, beyond + inside, beyond + outside}});
+            });
+        });
+    });
 }
 
 template <class Use>
