@@ -146,6 +146,8 @@ ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
     hydraulics.grain_density = soil.dry_density / (1 - soil.porosity);
     hydraulics.mobility = soil.hydraulics.conductivity.along / (scene.water.density * scene.gravity);
     hydraulics.gas_mobility = hydraulics.mobility / scene.gas.viscosity_ratio;
+    hydraulics.residual_water =
+        soil.hydraulics.retention.residual_saturation * soil.porosity * scene.water.density / soil.dry_density;
     if (soil.solid.model != SolidModel::mohr_coulomb) return hydraulics;
     const Strength& strength = soil.solid.strength;
     if (strength.model == StrengthModel::fredlund)

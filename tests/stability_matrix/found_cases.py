@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from case import Case
-from random_cases import random_case, rigid_column
+from random_cases import moving_case, random_case, rigid_column
 from scenes import column, earth, elastic_soil, rain_zone, section, sloping, soil
 
 
@@ -83,10 +83,17 @@ def coupled_cases():
     scene = few_cells(sand, 1, {"flow": "hydrostatic", "waterTable": 0, "stress": "k0", "k0": 0.4}, surface=rain_zone(1e-6))
     yield Case("found/91_reduced", scene, [["step", 1, 5]])
     for number in (31, 77, 83, 89, 91, 107, 146, 191, 187, 203, 254, 257, 272, 287, 371, 382, 403, 440, 467, 673, 754, 773,
-                   779, 787, 865, 914, 980, 1022, 1028, 1191, 1574, 1966, 2218, 2645, 3302, 3922, 3926, 14286, 17563):
+                   779, 787, 865, 914, 980, 1022, 1028, 1191, 1574, 1966, 2218, 2645, 3302, 3622, 3922, 3926, 4193, 5626, 6434,
+                   9409, 12455, 14286, 17563):
         yield replace(random_case(number), name=f"found/{number}")
+
+
+def moving_cases():
+    for number in (238, 2335, 2341, 2558, 2656, 2980):
+        yield replace(moving_case(number), name=f"found/moving_{number}")
 
 
 def cases():
     yield from flow_cases()
     yield from coupled_cases()
+    yield from moving_cases()

@@ -119,6 +119,34 @@ TEST_CASE("wet ground that falls apart loses no water") {
     CHECK(column.rained() > 0);
 }
 
+TEST_CASE("dry ground below wet ground gives none of the water that does not flow") {
+    constexpr double cell_size = 0.1, residual = 0.2;
+    Hydraulics sand = van_genuchten(6e-3, 7);
+    sand.retention.residual_saturation = residual;
+    FreePoints points = block_of_points(cell_size, 0, 0, 1, 20, gas_fields);
+    for (size_t p = 0; p < points.count; ++p) {
+        points.soil[p] = points[position_y][p] < 1 ? 1 : 0;
+        const double filled = points.soil[p] == 1 ? residual : 0.9;
+        points[water_mass][p] = 1000 * porosity * filled * points[point_volume][p];
+    }
+    const double kept = residual * porosity * 1000 / block_density;
+    const std::vector<ExplicitHydraulics> hydraulics{{grain_density, 1e-2 / (1000 * gravity)},
+                                                     {grain_density, 1e-9 / (1000 * gravity), 0, false, 0, kept}};
+    ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity,
+                                                 {{elasticity(1e7, 0.3)}, {elasticity(1e7, 0.3)}}, hydraulics,
+                                                 {{loam(), 1e6}, {sand, 1e6}}, {1000, 1e6}, std::move(points), 1);
+    const double before = water_of(column.points());
+    for (int i = 1; i <= 500; ++i) {
+        REQUIRE(column.step(column.critical_step(), i % 10 == 0));
+        if (i % 10 != 0) continue;
+        for (size_t p = 0; p < column.points().count; ++p) {
+            if (column.points().soil[p] == 1)
+                CHECK(column.points()[water_mass][p] >= kept * column.points()[solid_mass][p] * (1 - 1e-14));
+        }
+    }
+    CHECK(water_of(column.points()) + column.seepage() == doctest::Approx(before).epsilon(1e-13));
+}
+
 TEST_CASE("what shared pores read of a soil is that of its curves") {
     const Hydraulics soil = loam();
     const HydraulicTable curves(soil);

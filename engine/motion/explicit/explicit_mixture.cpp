@@ -100,18 +100,11 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
 }
 
 /// Points pass water and gas on to others around the same nodes, until all have the nodes' head; where the step `keeps` what it leaves, it is
-/// due to them. With gas, `fluids` is filled from what keep_fluids() left.
+/// due to them. With gas, `fluids` is filled from what keep_fluids() left. `missing` as in add_water().
 template <Filling filling>
 template <bool keeps>
 void ExplicitMixture<filling>::even_out(size_t first, size_t count, const SplineBlock& spline, double dt,
-                                        FluidBlock& fluids) {
-    const auto pass = [&](PointField mass, PointField due, size_t k, double passed) {
-        if constexpr (keeps) {
-            points_[due][first + k] = passed;
-        } else {
-            points_[mass][first + k] += passed;
-        }
-    };
+                                        FluidBlock& fluids, [[maybe_unused]] BlockValues& missing) {
     VelocityBlock evening;
     if constexpr (has_gas) {
         VelocityBlock gas_evening;
@@ -124,17 +117,28 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
         }
         gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
         for (size_t k = 0; k < count; ++k) {
-            pass(gas_mass, gas_due, k,
-                 dt * fluids.gas_volume[k] * (gas_evening.y[k] - gas_evening.x[k] * fluids.gas_potential[k]));
+            const double passed =
+                dt * fluids.gas_volume[k] * (gas_evening.y[k] - gas_evening.x[k] * fluids.gas_potential[k]);
+            if constexpr (keeps) {
+                points_[gas_due][first + k] = passed;
+            } else {
+                points_[gas_mass][first + k] += passed;
+            }
         }
     } else {
         find_fluids(first, count, fluids);
         gather_values(nodes_.grid, nodes_.evening, count, spline, evening);
     }
     const double unit_weight = nodes_.gravity * water_.density;
+    BlockValues passed;
     for (size_t k = 0; k < count; ++k) {
         const double head = fluids.pressure[k] + unit_weight * points_[position_y][first + k];
-        pass(water_mass, water_due, k, dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head));
+        passed[k] = dt * points_[solid_mass][first + k] * (evening.y[k] - evening.x[k] * head);
+    }
+    if constexpr (keeps) {
+        std::copy_n(passed.begin(), count, points_[water_due] + first);
+    } else {
+        add_water(first, count, passed, missing.data());
     }
 }
 
@@ -253,6 +257,37 @@ void ExplicitMixture<filling>::find_potential(size_t first, size_t count, FluidB
     for (size_t k = 0; k < count; ++k) potential[k] = specific * potential[k] + gravity * y[k];
 }
 
+/// Only mobile water is taken from a point: `missing` grows by what one at its residual saturation is short of.
+template <Filling filling>
+void ExplicitMixture<filling>::add_water(size_t first, size_t count, const BlockValues& __restrict gain,
+                                         double* __restrict missing) {
+    double* __restrict water = points_[water_mass] + first;
+    const double* __restrict mass = points_[solid_mass] + first;
+    const int32_t* __restrict soil = points_.soil.data() + first;
+    for (size_t k = 0; k < count; ++k) {
+        const double residual = hydraulics_[static_cast<size_t>(soil[k])].residual_water * mass[k];
+        const double left = water[k] + gain[k];
+        water[k] = std::max(left, std::min(water[k], residual));
+        missing[k] += water[k] - left;
+    }
+}
+
+/// What flowed to the points in the last step. What they are short of is left in place of the water's velocity, which is the nodes' between the two
+/// passes of a step: the nodes then take it from the points around.
+template <Filling filling>
+void ExplicitMixture<filling>::take_water(size_t first, size_t count, const VelocityBlock& rates) {
+    BlockValues gain;
+    const double* __restrict mass = points_[solid_mass] + first;
+    for (size_t k = 0; k < count; ++k) gain[k] = nodes_.flow_time * mass[k] * rates.y[k];
+    if (restarted_) std::copy_n(points_[water_due] + first, count, gain.begin());
+    if constexpr (filling == Filling::saturated) {
+        for (size_t k = 0; k < count; ++k) points_[water_mass][first + k] += gain[k];
+    } else {
+        std::fill_n(points_[liquid_velocity_x] + first, count, 0.0);
+        add_water(first, count, gain, points_[liquid_velocity_x] + first);
+    }
+}
+
 /// What flowed to the points in the last step.
 template <Filling filling>
 void ExplicitMixture<filling>::take_gas(size_t first, size_t count, const VelocityBlock& rates) {
@@ -334,10 +369,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         } else {
             gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
         }
-        for (size_t k = 0; k < count; ++k) {
-            const double due = restarted_ ? points_[water_due][first + k] : nodes_.flow_time * mass[k] * rates.y[k];
-            points_[water_mass][first + k] += due;
-        }
+        take_water(first, count, rates);
         smooth_dilation(count, rates.x, gradient);
         set_elasticity(soils_, points_, first, count, material);
         strain_elastically(points_, first, count, dt, gradient, material);
@@ -380,7 +412,7 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
     SplineBlock spline;
     VelocityBlock taken;
     [[maybe_unused]] VelocityBlock liquid_taken;
-    BlockValues dilation, outflow;
+    BlockValues dilation, outflow, missing;
     GiftBlock gift, liquid_gift;
     [[maybe_unused]] GiftBlock gas_gift;
     [[maybe_unused]] FluidBlock fluids;
@@ -394,7 +426,8 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         if constexpr (filling == Filling::saturated) {
             if (keeps) std::fill_n(points_[water_due] + first, count, 0.0);
         } else {
-            even_out<keeps>(first, count, spline, dt, fluids);
+            std::copy_n(points_[liquid_velocity_x] + first, count, missing.begin());
+            even_out<keeps>(first, count, spline, dt, fluids, missing);
         }
         gather_divergence(grid, nodes_.velocity, count, spline, dilation);
         take_velocity<keeps>(grid, nodes_.velocity, points_, first, count, spline, points_[solid_mass] + first,
@@ -419,6 +452,7 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         for (size_t k = 0; k < count; ++k) {
             gift[k].own[3] = points_[solid_mass][first + k] * dilation[k];
             liquid_gift[k].own[3] = -points_[point_volume][first + k] * outflow[k];
+            if constexpr (filling != Filling::saturated) liquid_gift[k].own[3] -= missing[k] / dt;
             x[k] += dt * taken.x[k];
             y[k] += dt * taken.y[k];
         }

@@ -29,6 +29,8 @@ struct ExplicitHydraulics {
         0;  ///< cohesion gained per suction, -, times the effective saturation where `weighs_suction`
     bool weighs_suction = false;
     double gas_mobility = 0;  ///< of the dry soil, kappa / mu_g, m2/(Pa s); three phases only
+    double residual_water =
+        0;  ///< that does not flow, kg per kg of solid: what fills the pores at the start to the residual saturation
 };
 
 /// What of the pore pressures the skeleton does not bear: max(p_l, p_g), or S_e p_l + (1 - S_e) p_g (physics.md).
@@ -126,7 +128,8 @@ private:
     void find_wave_speed();
     void fall_rain();
     template <bool keeps>
-    void even_out(size_t first, size_t count, const SplineBlock& spline, double dt, FluidBlock& fluids);
+    void even_out(size_t first, size_t count, const SplineBlock& spline, double dt, FluidBlock& fluids,
+                  BlockValues& missing);
     void owe_water(Strip strip);
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
     void find_pores(size_t first, size_t count, BlockValues& pores) const;
@@ -145,6 +148,8 @@ private:
                           PointField dissolved, PointField vapour);
     void give_solutes(size_t first, size_t count, const SplineBlock& spline, const BlockValues& dissolved_outflow,
                       const BlockValues& vapour_outflow);
+    void add_water(size_t first, size_t count, const BlockValues& gain, double* missing);
+    void take_water(size_t first, size_t count, const VelocityBlock& rates);
     void take_gas(size_t first, size_t count, const VelocityBlock& rates);
     void push_gas(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
     void give_gas(size_t first, size_t count, const SplineBlock& spline, const GiftBlock& gift);
