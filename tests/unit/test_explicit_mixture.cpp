@@ -229,7 +229,7 @@ TEST_CASE("water and gas share pores at any masses, and these are no stiffer tha
 }
 
 TEST_CASE("an edge is found from the share of the surroundings below it") {
-    // Integrals of N, y N and (y - mean y) dN/dy up to the edge, by the midpoint rule.
+    // Integrals of N, y N and (y - mean y) dN/dy up to the edge, by the midpoint rule; z is the depth below it.
     const auto spline = [](double y) {
         const double far = std::abs(y);
         return far < 0.5 ? 0.75 - y * y : 0.5 * std::pow(std::max(1.5 - far, 0.0), 2);
@@ -237,11 +237,13 @@ TEST_CASE("an edge is found from the share of the surroundings below it") {
     for (const double above : {-1.3, -0.8, -0.5, -0.2, 0.0, 0.4, 0.6, 1.1}) {
         constexpr int parts = 20000;
         const double step = (above + 1.5) / parts;
-        double share = 0, moment = 0;
+        double share = 0, moment = 0, gas = 0, gas_moment = 0;  // of gas in a share of 0.1 + z of the ground
         for (int i = 0; i < parts; ++i) {
             const double y = -1.5 + (i + 0.5) * step;
             share += step * spline(y);
             moment += step * y * spline(y);
+            gas += step * (0.1 + above - y) * spline(y);
+            gas_moment += step * (0.1 + above - y) * (above - y) * spline(y);
         }
         const LevelEdge edge(share);
         CHECK(edge.above == doctest::Approx(above).epsilon(1e-3));
@@ -251,6 +253,9 @@ TEST_CASE("an edge is found from the share of the surroundings below it") {
         const GroundEdge ground({0, spline(above) * 2}, share, 2);
         CHECK(ground.height == doctest::Approx(2 * above).epsilon(1e-3));
         CHECK(ground.distance == doctest::Approx(2 * (above - moment / share)).epsilon(1e-3));
+        // By parts, integral of (0.1 + z) dN/dy = 0.1 N(above) + integral of N.
+        const NodeVector sum{0, 2 * (0.1 * spline(above) + share)};
+        CHECK(ground.distance_to(4 * gas, sum, 4 * share) == doctest::Approx(2 * gas_moment / gas).epsilon(1e-3));
     }
 }
 

@@ -384,10 +384,18 @@ double GridMixture<has_gas, exchanges>::wetted_share(size_t node) const {
     return offered > 0 || capacity[node] < 0 ? 1.0 : 0.0;
 }
 
+/// From the edge to the middle of a node's gas, whose potential is the node's, m.
+template <bool has_gas, bool exchanges>
+double GridMixture<has_gas, exchanges>::gas_distance(size_t node, const GroundEdge& edge) const {
+    const NodeVector sum{gas.gradients[node].edge_x, gas.gradients[node].edge_y};
+    return edge.distance_to(gas.means[node].volume, sum, means[node].volume);
+}
+
 /// The atmosphere draws gas in or out by the difference of psi over the distance to the edge, besides what the gas's momentum carries. k_rg on the way is
 /// the mean of the node's and the edge's: there it is less, as the suction is, by the share of what the edge can take that rain offers, and none
 /// where that is all. The difference is that of the step's end, psi rising by R T / M times the gain's share of the gas: where drag is weak the edge
-/// fills within a step, and by the start's would fill beyond the atmosphere's pressure.
+/// fills within a step, and by the start's would fill beyond the atmosphere's pressure. The gain is that from the ground, too: a steady flow through the
+/// edge changes no psi, whatever the step.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
                                               const NodeVector& pushed) {
@@ -399,9 +407,10 @@ void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const Grou
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
     const double carried = dot(gas.flux[node], outwards) - driven * dot(edge.stretched(pushed), outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
-    const double opening = outer_conductance * edge.length / edge.distance;
+    const double opening = outer_conductance * edge.length / gas_distance(node, edge);
     const double filling = dt * content * opening * gas.specific / gas.means[node].mass;
-    const double inflow = content * (opening * (edge_push - answer.push) - carried) / (1 + filling);
+    const double drawn = content * (opening * (edge_push - answer.push) - carried);
+    const double inflow = (drawn - filling * gas.returned[node]) / (1 + filling);
     gas.returned[node] += inflow;
     gas.escaped -= dt * inflow;
 }

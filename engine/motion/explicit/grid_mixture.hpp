@@ -172,6 +172,7 @@ private:
     [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
     void solve(size_t node, double dt);
     [[nodiscard]] double wetted_share(size_t node) const;
+    [[nodiscard]] double gas_distance(size_t node, const GroundEdge& edge) const;
     void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed);
     void mirror();
     void fold_solutes();

@@ -159,7 +159,7 @@ void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, 
     double inflow = crossing * (crossing > 0 ? solutes.outer_vapour : fraction);
     if (edge.distance > 0) {
         const double drier = solutes.outer_vapour - fraction;
-        inflow += (1 - wetted_share(node)) * content * diffusion * edge.length * drier / edge.distance;
+        inflow += (1 - wetted_share(node)) * content * diffusion * edge.length * drier / gas_distance(node, edge);
     }
     solutes.returned[node].vapour = dot(vapour.flux, fluid.outwards) + inflow;
     solutes.evaporated -= dt * inflow;

@@ -17,27 +17,34 @@ struct LevelEdge {
     double above = 0;  ///< of the edge, from the node, in cells
     double sidedness =
         1;  ///< V over integral of -(y - mean y) dN/dy: 1 in full surroundings, 4 in all that hold less than a sixth
+    double variance = 0;  ///< of y in V, in squares of a cell
     explicit LevelEdge(double share);
 };
 
 inline LevelEdge::LevelEdge(double share) {
-    double spline = 0, moment = 0;  // N at the edge; integral of y N up to it
+    double spline = 0, moment = 0, second = 0;  // N at the edge; integrals of y N and y^2 N up to it
     if (share <= 1.0 / 6) {
-        above = std::cbrt(6 * share) - 1.5;
+        const double reach = std::cbrt(6 * share);
+        above = reach - 1.5;
         sidedness = 4;
+        variance = 3.0 / 80 * reach * reach;
         return;
     }
     if (share < 5.0 / 6) {
         for (int i = 0; i < 8; ++i) above = (share - 0.5 + above * above * above / 3) / 0.75;
         spline = 0.75 - above * above;
         moment = -13.0 / 64 + above * above * (0.375 - 0.25 * above * above);
+        second = 0.125 + above * above * above * (0.25 - 0.2 * above * above);
     } else {
         const double rest = std::cbrt(6 * std::max(1 - share, 0.0));
         above = 1.5 - rest;
         spline = 0.5 * rest * rest;
         moment = -rest * rest * rest * (0.25 - 0.125 * rest);
+        second = 0.25 - rest * rest * rest * (0.375 - rest * (0.375 - 0.1 * rest));
     }
-    sidedness = share / (share - (above - moment / share) * spline);
+    const double mean = moment / share;
+    sidedness = share / (share - (above - mean) * spline);
+    variance = second / share - mean * mean;
 }
 
 struct GroundEdge {
@@ -46,6 +53,8 @@ struct GroundEdge {
     double height = 0;    ///< of the edge above the node, m
     double distance = 0;  ///< from the middle of the ground to the edge, m; 0: no edge
     double more = 0;      ///< what a stretch adds along the normal, per unit
+    double reach = 0;     ///< depth of the ground in the surroundings, m
+    double spread = 0;    ///< variance of that depth times the square of 1 + more, m2
 
     /// `sum`: of V grad N, m; `share`: of the node's surroundings that is ground.
     GroundEdge(const NodeVector& sum, double share, double cell_size) {
@@ -56,6 +65,15 @@ struct GroundEdge {
         height = level.above * cell_size * normal.y;
         distance = share * cell_size * cell_size * (1 - 1 / level.sidedness) / length;
         more = std::sqrt(level.sidedness) - 1;
+        reach = (level.above + 1.5) * cell_size;
+        spread = level.sidedness * level.variance * cell_size * cell_size;
+    }
+
+    /// From the edge to the middle of what fills a share of the ground that is linear in depth, m. `volume`, `sum`: of its V N and V grad N; `ground`:
+    /// the ground's own. The middle is deeper by the variance times the share's slope over its mean, which needs the stretch that a pressure's needs.
+    [[nodiscard]] double distance_to(double volume, const NodeVector& sum, double ground) const {
+        const double slope = (normal.x * sum.x + normal.y * sum.y) / volume - length / ground;
+        return std::max(std::min(distance + spread * slope, reach), 0.5 * distance);
     }
 
     [[nodiscard]] NodeVector stretched(const NodeVector& v) const {
