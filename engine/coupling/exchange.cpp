@@ -222,8 +222,6 @@ void Simulation::accept(double duration, const FlowState& flow) {
         state_.pore_volume = found_volume_;
         state_.flow_pore_volume = taken_volume_;
     }
-    for (size_t i = 0; i < state_.displacement_rate.size(); ++i)
-        state_.displacement_rate[i] = equilibrium_->increment()[i] / duration;
     equilibrium_->accept();
     state_.node_position = mesh_.position;
     state_.displacement.assign(equilibrium_->displacement().begin(), equilibrium_->displacement().end());

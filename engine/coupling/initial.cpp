@@ -116,7 +116,6 @@ void Simulation::make_motion() {
     const size_t freedoms = mesh_.position.size();
     state_.displacement.assign(freedoms, 0.0);
     state_.velocity.assign(freedoms, 0.0);
-    state_.displacement_rate.assign(freedoms, 0.0);
     node_force_.assign(freedoms, 0.0);
     prescribed_displacement_.assign(freedoms, 0.0);
     const std::vector<uint8_t> prescribed = hold_nodes();

@@ -190,16 +190,14 @@ void Simulation::Water::answer_pressures(std::span<const double> change) {
 Simulation::Exchange Simulation::settle_jointly(double duration, FlowPath& path, bool is_short,
                                                 const Cancelled& cancelled) {
     constexpr int32_t most_steps = 200;
-    constexpr int32_t few_steps = 80;  // few that find a balance take more
+    constexpr int32_t few_steps = 30;  // few that find a balance take more
     const EquilibriumOutcome alone = outcome_;
     const bool is_lost_alone = alone.status == EquilibriumStatus::no_equilibrium;
     const double flow_before = counts.seconds_flow;
     {
         const Stopwatch stopwatch(counts.seconds_motion);
         Water water(*this, duration, path, cancelled);
-        std::vector<double> expected = state_.displacement_rate;  // else each step would creep all the way again
-        for (double& u : expected) u *= duration;
-        outcome_ = equilibrium_->solve_with(water, expected, is_short && !is_lost_alone ? most_steps : few_steps);
+        outcome_ = equilibrium_->solve_with(water, is_short && !is_lost_alone ? most_steps : few_steps);
         if (water.is_cancelled()) return Exchange::cancelled;
     }
     counts.seconds_motion -= counts.seconds_flow - flow_before;

@@ -20,7 +20,7 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
       stiffness_(kinematics_, equations_, mesh.dimension),
       acceleration_(equations_.freedom.size()) {
     const size_t freedoms = mesh.position.size();
-    for (auto* field : {&displacement_, &increment_, &origin_, &reaction_, &external_, &internal_, &start_})
+    for (auto* field : {&displacement_, &increment_, &reaction_, &external_, &internal_, &start_})
         field->assign(freedoms, 0.0);
     for (auto* field : {&residual_, &direction_, &last_direction_}) field->assign(equations_.freedom.size(), 0.0);
     if (equations_.count() == 0) return;  // every displacement is given: nothing to solve for
@@ -57,12 +57,9 @@ EquilibriumOutcome Equilibrium::solve(const Loads& loads, double wanted, int32_t
     return outcome;
 }
 
-EquilibriumOutcome Equilibrium::solve_with(Companion& companion, std::span<const double> increment,
-                                           int32_t most_creep_steps) {
+EquilibriumOutcome Equilibrium::solve_with(Companion& companion, int32_t most_creep_steps) {
     EquilibriumOutcome outcome;
     reject();
-    increment_.assign(increment.begin(), increment.end());
-    origin_ = increment_;
     is_at_start_ = false;
     wanted_ = tolerance;
     if (!follow(&companion, 0)) return outcome;
@@ -212,7 +209,6 @@ void Equilibrium::restore(std::span<const double> displacement) {
 
 void Equilibrium::forget_increment() {
     std::fill(increment_.begin(), increment_.end(), 0.0);
-    std::fill(origin_.begin(), origin_.end(), 0.0);
     is_at_start_ = true;
 }
 

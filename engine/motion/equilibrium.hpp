@@ -56,8 +56,8 @@ public:
     /// many steps of creep it is given up.
     EquilibriumOutcome solve(const Loads& loads, double wanted = tolerance, int32_t most_creep_steps = 200);
 
-    /// Creeps from an increment of the accepted state (nodes x dimension, m) to where the skeleton is in equilibrium with what loads it and that agrees.
-    EquilibriumOutcome solve_with(Companion& companion, std::span<const double> increment, int32_t most_creep_steps);
+    /// Creeps from the accepted state, without increment, to where the skeleton is in equilibrium with what loads it and that agrees.
+    EquilibriumOutcome solve_with(Companion& companion, int32_t most_creep_steps);
 
     /// As solve() for a skeleton that does not yield: gravity turned on elastically.
     EquilibriumOutcome solve_elastically(const Loads& loads);
@@ -138,8 +138,7 @@ private:
     bool was_deformed_ = false;                 // at the last update: elastic_ is not the undeformed one
     bool is_at_start_ = true;                   // no increment to start from
 
-    std::vector<double> displacement_, increment_, reaction_;  // nodes x dimension
-    std::vector<double> origin_;  // likewise: the increment that was expected, no proof of anything
+    std::vector<double> displacement_, increment_, reaction_;    // nodes x dimension
     std::vector<double> external_, internal_, start_;            // nodes x dimension
     std::vector<double> residual_, direction_, last_direction_;  // equations
     Anderson acceleration_;

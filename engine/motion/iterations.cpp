@@ -243,7 +243,7 @@ bool Equilibrium::watch(CollapseWatch& watch, std::span<const double> last_direc
     for (size_t i = 0; i < direction_.size(); ++i) {
         const auto freedom = static_cast<size_t>(equations_.freedom[i]);
         loads += external_[freedom] * direction_[i];
-        displacement = std::max(displacement, std::abs(increment_[freedom] - origin_[freedom]));
+        displacement = std::max(displacement, std::abs(increment_[freedom]));
     }
     const double lengths = norm(direction_) * norm(last_direction);
     return watch.add(displacement, loads > 0 ? surplus / loads : 0,
