@@ -18,10 +18,8 @@ constexpr int most_plain_iterations = 15;
 // Disagreement of the first iteration at which the next exchange is as long as this one.
 constexpr double well_expected = 100.0;
 
-// How much longer the next exchange may be: the expectation is linear in time, its error quadratic in the exchange's length. Below the length
-// given up last it grows slowly: there the next one to be given up costs more than what shorter ones do.
-double growth(double first_disagreement, bool is_below_given_up) {
-    const double most = is_below_given_up ? 1.5 : 4.0;
+// How much longer the next exchange may be: the expectation is linear in time, its error quadratic in the exchange's length.
+double growth(double first_disagreement, double most) {
     return std::clamp(0.9 * std::sqrt(well_expected / std::max(first_disagreement, 1e-12)), 0.2, most);
 }
 
@@ -30,8 +28,10 @@ double growth(double first_disagreement, bool is_below_given_up) {
 Simulation::Exchange Simulation::exchange(double duration, bool is_short, const Cancelled& cancelled) {
     const bool moves = skeleton_moves();
     const bool is_below_given_up = duration < state_.given_up_exchange;
+    // Below the length given up last it grows slowly: the next one to be given up costs more than shorter ones do.
+    const double most_growth = is_below_given_up ? 1.5 : 4.0;
     // No forecast that errs may keep exchanges short.
-    const double least_growth = is_short ? (is_below_given_up ? 1.5 : 2.0) : 0.0;
+    const double least_growth = is_short ? std::min(2.0, most_growth) : 0.0;
     FlowPath path{state_.flow, state_.watch, {}};
     double first_disagreement = 0, least_disagreement = std::numeric_limits<double>::infinity();
     int least_at = 0;
@@ -78,7 +78,7 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     state_.watch = path.watch;
     happenings.insert(happenings.end(), path.noticed.begin(), path.noticed.end());
     if (flow_ && moves)
-        state_.exchange_step = duration * std::max(growth(first_disagreement, is_below_given_up), least_growth);
+        state_.exchange_step = duration * std::max(growth(first_disagreement, most_growth), least_growth);
     if (!is_below_given_up) state_.given_up_exchange = 0;
     return Exchange::agreed;
 }

@@ -123,7 +123,7 @@ void Equilibrium::finish(EquilibriumOutcome& outcome) {
     skeleton_.complete(increment_);
     outcome.yielding = yielding_;
     outcome.residual = left_residual_ = relative_residual();
-    if (is_balanced()) outcome.status = EquilibriumStatus::converged;
+    if (outcome.residual <= tolerance || is_within_rounding()) outcome.status = EquilibriumStatus::converged;
     for (const double u : increment_) outcome.largest_increment = std::max(outcome.largest_increment, std::abs(u));
 }
 

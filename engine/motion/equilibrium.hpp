@@ -40,7 +40,7 @@ struct EquilibriumOutcome {
 class Equilibrium {
 public:
     /// The unbalanced force that is let stand, over the norm of the loads: the larger of the external forces (weight, pore
-    /// stress, boundary forces) and the reactions.
+    /// stress, boundary forces) and the reactions; more only within what displacements are rounded by.
     static constexpr double tolerance = 1e-7;
 
     /// `solids`: one a soil. `prescribed`: nodes x dimension, non-zero where the displacement is given. `gravity` in m/s2,
@@ -112,7 +112,7 @@ private:
     double unbalance_elastically();
     void set_residual();
     double relative_residual();
-    bool is_balanced();
+    [[nodiscard]] bool is_within_rounding() const;
     void predict(double wanted, EquilibriumOutcome& outcome);
     bool accelerate(EquilibriumOutcome& outcome);
     bool creep(int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion = nullptr);

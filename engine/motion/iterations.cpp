@@ -65,10 +65,9 @@ double Equilibrium::relative_residual() {
     return unbalanced == 0 ? 0 : unbalanced / std::max(norm(external_), norm(reaction_));
 }
 
-/// Whether the loads are balanced as well as displacements can. Stiff ground on soft ground moves far and strains little: there the last digit of
+/// Whether the loads are balanced as well as displacements can: asked last, when nothing brings them nearer. Stiff ground on soft ground moves far and strains little: there the last digit of
 /// the displacement may be more of a force than the tolerance lets stand, at most eps |K| |u| (Oettli & Prager, Numer. Math. 6, 1964).
-bool Equilibrium::is_balanced() {
-    if (relative_residual() <= tolerance) return true;
+bool Equilibrium::is_within_rounding() const {
     const SparseMatrix& matrix = elastic_.matrix;
     std::vector<double> force(residual_.size(), 0.0);
     for (size_t j = 0; j < force.size(); ++j) {
@@ -157,7 +156,7 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Compani
         }
         last_direction_ = direction_;
     }
-    return is_balanced() && agrees();
+    return (relative_residual() <= tolerance || is_within_rounding()) && agrees();
 }
 
 /// Goes along the direction, which is cut to the part gone, until the unbalanced force does hardly less work on it than at the start

@@ -128,26 +128,28 @@ void WalledGrid::for_each_wall(const Use& use) const {
 
 template <class Use>
 void WalledGrid::for_each_corner(const Use& use) const {
+    struct Facing {
+        const Wall* wall;
+        int32_t inwards;
+    };
     const auto stride = static_cast<size_t>(grid.cells[0]);
-    for_each_wall([&](const Wall& side, size_t side_axis, int32_t inwards_x) {
-        if (side.kind != WallKind::friction || side_axis != 0) return;
-        for_each_wall([&](const Wall& level, size_t level_axis, int32_t inwards_y) {
-            if (level.kind != WallKind::friction || level_axis != 1) return;
-            const int32_t row = line_at(level, 1, inwards_y);
-            if (row < 0) return;
+    for (const Facing side : {Facing{&walls.left, 1}, Facing{&walls.right, -1}}) {
+        for (const Facing level : {Facing{&walls.base, 1}, Facing{&walls.top, -1}}) {
+            if (side.wall->kind != WallKind::friction || level.wall->kind != WallKind::friction) continue;
+            const int32_t column = line_at(*side.wall, 0, side.inwards), row = line_at(*level.wall, 1, level.inwards);
+            if (column < 0 || row < 0) continue;
+            const Span& span = spans[static_cast<size_t>(row)];
+            if (column < span.first || column >= span.last) continue;
             const auto first = static_cast<size_t>(row) * stride,
-                       beyond = static_cast<size_t>(row - inwards_y) * stride;
-            for_each_pair(side, 0, inwards_x, [&](NodePair beside) {
-                if (beside.inside / stride != static_cast<size_t>(row)) return;
-                const size_t inside = beside.inside - first, outside = beside.beyond - first;
-                use(Corner{&side,
-                           &level,
-                           inwards_x,
-                           inwards_y,
-                           {beside.inside, beside.beyond, beyond + inside, beyond + outside}});
-            });
-        });
-    });
+                       beyond = static_cast<size_t>(row - level.inwards) * stride;
+            const auto inside = static_cast<size_t>(column), outside = static_cast<size_t>(column - side.inwards);
+            use(Corner{side.wall,
+                       level.wall,
+                       side.inwards,
+                       level.inwards,
+                       {first + inside, first + outside, beyond + inside, beyond + outside}});
+        }
+    }
 }
 
 template <class Use>
