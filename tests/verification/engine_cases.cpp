@@ -126,6 +126,7 @@ void fly(Rows& rows) {
         return errors.linear;
     });
     rows.add("angular momentum, a step of 10,000", {"", "rel", 1e-12, "kept"}, [&] { return errors.angular; });
+    rows.add("volume, after 10,000 steps", {"", "rel", 1e-2, "kept"}, [&] { return errors.volume; });
 }
 
 const std::map<std::string, void (*)(Rows&)> cases{

@@ -111,7 +111,14 @@ inline Momentum momentum_of(const FreePoints& points, double cell_size) {
 
 struct FlightErrors {
     double linear, angular;  ///< largest change in a step beside the weight's, over the momentum
+    double volume;           ///< change in the whole flight, over the volume
 };
+
+inline double volume_of(const FreePoints& points) {
+    double sum = 0;
+    for (size_t p = 0; p < points.count; ++p) sum += points[point_volume][p];
+    return sum;
+}
 
 /// A block that spins about its centre and flies, without weight (its angular momentum is then the same about any place).
 inline FlightErrors fly_block(int64_t steps) {
@@ -127,7 +134,8 @@ inline FlightErrors fly_block(int64_t steps) {
     const double dt = block.critical_step();
     Momentum last = momentum_of(block.points(), cell_size);
     const double linear = std::hypot(last.x, last.y), angular = std::abs(last.angular);
-    FlightErrors errors{0, 0};
+    const double volume = volume_of(block.points());
+    FlightErrors errors{0, 0, 0};
     for (int64_t step = 0; step < steps; ++step) {
         block.step(dt, true);
         const Momentum now = momentum_of(block.points(), cell_size);
@@ -135,6 +143,7 @@ inline FlightErrors fly_block(int64_t steps) {
         errors.angular = std::max(errors.angular, std::abs(now.angular - last.angular) / angular);
         last = now;
     }
+    errors.volume = std::abs(volume_of(block.points()) / volume - 1);
     return errors;
 }
 

@@ -107,8 +107,14 @@ void strain_elastically(FreePoints& points, size_t first, size_t count, double d
     double* __restrict xy = points[stress_xy] + first;
     double* __restrict volume = points[point_volume] + first;
     for (size_t k = 0; k < count; ++k) {
-        const double e_xx = dt * gradient.xx[k], e_yy = dt * gradient.yy[k];
-        const double g_xy = dt * gradient.xy[k], g_yx = dt * gradient.yx[k];
+        // The step's deformation is (1 - D)^-1, D = dt dv/dx where the points have come to; dv/dx half-way there is D (1 - D / 2)^-1.
+        const double d_xx = dt * gradient.xx[k], d_yy = dt * gradient.yy[k];
+        const double d_xy = dt * gradient.xy[k], d_yx = dt * gradient.yx[k];
+        const double trace = d_xx + d_yy, determinant = d_xx * d_yy - d_xy * d_yx;
+        const double end = 1 - trace + determinant, half_way = 1 - 0.5 * trace + 0.25 * determinant;
+        const double both = 1 / (end * half_way), to_middle = both * end;
+        const double e_xx = to_middle * (d_xx - 0.5 * determinant), e_yy = to_middle * (d_yy - 0.5 * determinant);
+        const double g_xy = to_middle * d_xy, g_yx = to_middle * d_yx;
         const double half_angle = 0.25 * (g_yx - g_xy);
         const double scale = 1 / (1 + half_angle * half_angle);
         const double cosine = (1 - half_angle * half_angle) * scale, sine = 2 * half_angle * scale;
@@ -120,7 +126,7 @@ void strain_elastically(FreePoints& points, size_t first, size_t count, double d
         yy[k] = middle - turned + pressure + twice * e_yy;
         zz[k] += pressure;
         xy[k] = half * sine_2 + xy[k] * cosine_2 + block.shear[k] * (g_xy + g_yx);
-        volume[k] *= (1 + e_xx) * (1 + e_yy) - g_xy * g_yx;
+        volume[k] *= both * half_way;
     }
 }
 

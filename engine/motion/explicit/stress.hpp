@@ -43,7 +43,8 @@ void set_elasticity(const std::vector<ExplicitSoil>& soils, const FreePoints& po
 void set_strength(const std::vector<ExplicitSoil>& soils, const FreePoints& points, size_t first, size_t count,
                   double cell_size, MaterialBlock& block);
 
-/// Hooke's law on the stress turned by the step's rotation (Hughes & Winget 1980), and the change of volume, in dt (s).
+/// Hooke's law on the stress turned by the step's rotation (Hughes & Winget 1980), and the change of volume, in dt (s); `gradient` is that
+/// of the velocity that the points came with, where they have come to.
 void strain_elastically(FreePoints& points, size_t first, size_t count, double dt, const GradientBlock& gradient,
                         const MaterialBlock& block);
 
