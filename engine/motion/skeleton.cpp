@@ -122,7 +122,7 @@ int32_t Skeleton::respond(std::span<const double> increment, std::span<double> f
             yields_[p] = is_admissible(strength_[p], trial) ? 0 : 1;
             if (yields_[p] == 0) return trial;
             Matrix4d tangent;
-            const PlasticReturn plastic = return_to_yield_surface(elastic, strength_[p], trial, tangent);
+            const PlasticReturn plastic = return_to_yield_surface(elastic, strength_[p], trial, &tangent);
             Map<Matrix4d>(tangent_.data() + 16 * p) = tangent;
             points_.plastic_strain[p] += plastic.plastic_shear_strain;
             ++yielding;

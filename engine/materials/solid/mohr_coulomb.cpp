@@ -30,7 +30,15 @@ struct Plane {
 };
 
 // The shear planes 12 and 23 meet 13 where two principal stresses become equal; the other three cannot be active when sorted.
-enum PlaneName : size_t { shear_13, shear_12, shear_23, tension_1, tension_2, tension_3 };
+enum PlaneName : Eigen::Index { shear_13, shear_12, shear_23, tension_1, tension_2, tension_3 };
+constexpr int plane_count = 6;
+
+/// The planes that a stress is returned to at once.
+template <PlaneName... names>
+struct Active {
+    static constexpr int count = sizeof...(names);
+    static constexpr std::array<PlaneName, sizeof...(names)> name{names...};
+};
 
 struct PrincipalReturn {
     Vector3d stress = Vector3d::Zero();
@@ -43,9 +51,10 @@ struct PrincipalReturn {
 struct PrincipalProblem {
     Matrix3d stiffness;
     Vector3d trial;
-    std::array<Plane, 6> planes;
+    std::array<Plane, plane_count> planes;
     double shear_modulus;  // Pa
     double tolerance;      // Pa
+    bool wants_tangent;
 };
 
 // The tip of the cone counts as a corner of the tension planes, which is where they are when nothing cuts it off: volumetric
@@ -55,7 +64,7 @@ double apex_stress(const MohrCoulomb& material) {
     return material.cohesion * material.cos_friction / material.sin_friction;
 }
 
-std::array<Plane, 6> yield_planes(const MohrCoulomb& material, double tensile_strength) {
+std::array<Plane, plane_count> yield_planes(const MohrCoulomb& material, double tensile_strength) {
     const double up = 1 + material.sin_friction;
     const double down = material.sin_friction - 1;
     const double flow_up = 1 + material.sin_dilation;
@@ -71,15 +80,14 @@ std::array<Plane, 6> yield_planes(const MohrCoulomb& material, double tensile_st
 
 // Returns by the given planes, keeps the result if it is the best so far, and says whether it is admissible. The second pass
 // removes the round-off of the first, which grows with lame / shear towards incompressibility.
-template <size_t count>
-bool try_planes(const PrincipalProblem& problem, const PlaneName (&active)[count], YieldRegion region,
-                PrincipalReturn& best) {
-    constexpr int n = static_cast<int>(count);
+template <class Planes>
+bool try_planes(const PrincipalProblem& problem, Planes, YieldRegion region, PrincipalReturn& best) {
+    constexpr int n = Planes::count;
     Eigen::Matrix<double, 3, n> normals;
     Eigen::Matrix<double, 3, n> flows;
     Eigen::Matrix<double, n, 1> strengths;
     for (int k = 0; k < n; ++k) {
-        const Plane& plane = problem.planes[active[k]];
+        const Plane& plane = problem.planes[static_cast<size_t>(Planes::name[static_cast<size_t>(k)])];
         normals.col(k) = plane.normal;
         flows.col(k) = plane.flow;
         strengths[k] = plane.strength;
@@ -101,34 +109,90 @@ bool try_planes(const PrincipalProblem& problem, const PlaneName (&active)[count
 
     best.stress = stress;
     best.plastic_strain = flows * multipliers;
-    best.tangent = problem.stiffness - stiff_flows * compliance * normals.transpose() * problem.stiffness;
+    if (problem.wants_tangent)
+        best.tangent = problem.stiffness - stiff_flows * compliance * normals.transpose() * problem.stiffness;
     best.region = region;
     best.violation = violation;
     return violation <= problem.tolerance;
 }
 
-// From the most frequent to the rarest. Were round-off to leave none admissible, the least violated stands.
-PrincipalReturn return_principal(const Elasticity& elastic, const MohrCoulomb& material, const Vector3d& trial) {
+/// Says cheaply which planes cannot be the answer: a_j . D b_k of all planes and f of the trial stress, found once, tell the multipliers
+/// of any of them and what is left of the others' f.
+class Screen {
+public:
+    explicit Screen(const PrincipalProblem& problem) : problem_(problem) {
+        Eigen::Matrix<double, 3, plane_count> normals, flows;
+        for (int k = 0; k < plane_count; ++k) {
+            const Plane& plane = problem.planes[static_cast<size_t>(k)];
+            normals.col(k) = plane.normal;
+            flows.col(k) = plane.flow;
+            excess_[k] = plane.normal.dot(problem.trial) - plane.strength;
+        }
+        relief_.noalias() = normals.transpose() * (problem.stiffness * flows);
+    }
+
+    template <class Planes>
+    [[nodiscard]] bool lets_pass(Planes) const {
+        constexpr double round_off = 1e6;  // many times the tolerance, for what try_planes() removes in its second pass
+        constexpr int n = Planes::count;
+        Eigen::Matrix<double, n, n> active;
+        Eigen::Matrix<double, n, 1> excess;
+        for (int j = 0; j < n; ++j) {
+            for (int k = 0; k < n; ++k)
+                active(j, k) = relief_(Planes::name[static_cast<size_t>(j)], Planes::name[static_cast<size_t>(k)]);
+            excess[j] = excess_[Planes::name[static_cast<size_t>(j)]];
+        }
+        const Eigen::Matrix<double, n, 1> multipliers = active.inverse() * excess;
+        const double most = round_off * problem_.tolerance;
+        if (-multipliers.minCoeff() * problem_.shear_modulus > most) return false;
+        Eigen::Matrix<double, plane_count, 1> left = excess_;
+        for (int k = 0; k < n; ++k) left -= multipliers[k] * relief_.col(Planes::name[static_cast<size_t>(k)]);
+        return !(left.maxCoeff() > most);
+    }
+
+private:
+    const PrincipalProblem& problem_;
+    Eigen::Matrix<double, plane_count, plane_count> relief_;  // Pa
+    Eigen::Matrix<double, plane_count, 1> excess_;            // Pa
+};
+
+// From the most frequent to the rarest, after the main plane, until one is admissible.
+template <class Attempt>
+bool try_edges_and_corners(bool is_cut_off, bool has_tip, Attempt&& attempt) {
+    const YieldRegion tension = is_cut_off ? YieldRegion::tension : YieldRegion::apex;
+    const YieldRegion shear_tension = is_cut_off ? YieldRegion::shear_tension : YieldRegion::apex;
+    if (attempt(Active<shear_13, shear_12>{}, YieldRegion::shear_edge)) return true;
+    if (attempt(Active<shear_13, shear_23>{}, YieldRegion::shear_edge)) return true;
+    if (!has_tip) return false;
+    return attempt(Active<tension_1, tension_2, tension_3>{}, YieldRegion::apex) ||
+           attempt(Active<tension_1>{}, tension) || attempt(Active<tension_1, tension_2>{}, tension) ||
+           attempt(Active<shear_13, tension_1>{}, shear_tension) ||
+           attempt(Active<shear_13, shear_12, tension_1>{}, shear_tension) ||
+           attempt(Active<shear_13, tension_1, tension_2>{}, shear_tension) ||
+           attempt(Active<shear_13, shear_23, tension_2>{}, shear_tension);
+}
+
+// Were round-off to leave none admissible, the least violated stands.
+PrincipalReturn return_principal(const Elasticity& elastic, const MohrCoulomb& material, const Vector3d& trial,
+                                 bool wants_tangent) {
     const double apex = apex_stress(material);
-    const bool cut_off = material.tensile_strength < apex;
-    const double tensile_strength = cut_off ? material.tensile_strength : apex;
-    const PrincipalProblem problem{elastic_stiffness(elastic).topLeftCorner<3, 3>(), trial,
-                                   yield_planes(material, tensile_strength), elastic.shear,
-                                   1e-12 * trial.cwiseAbs().maxCoeff()};
-    const auto [tension, shear_tension] = cut_off ? std::array{YieldRegion::tension, YieldRegion::shear_tension}
-                                                  : std::array{YieldRegion::apex, YieldRegion::apex};
+    const bool is_cut_off = material.tensile_strength < apex;
+    const double tensile_strength = is_cut_off ? material.tensile_strength : apex;
+    const bool has_tip = std::isfinite(tensile_strength);
+    const PrincipalProblem problem{elastic_stiffness(elastic).topLeftCorner<3, 3>(),
+                                   trial,
+                                   yield_planes(material, tensile_strength),
+                                   elastic.shear,
+                                   1e-12 * trial.cwiseAbs().maxCoeff(),
+                                   wants_tangent};
     PrincipalReturn best;
-    if (try_planes(problem, {shear_13}, YieldRegion::shear, best)) return best;
-    if (try_planes(problem, {shear_13, shear_12}, YieldRegion::shear_edge, best)) return best;
-    if (try_planes(problem, {shear_13, shear_23}, YieldRegion::shear_edge, best)) return best;
-    if (!std::isfinite(tensile_strength)) return best;
-    if (try_planes(problem, {tension_1, tension_2, tension_3}, YieldRegion::apex, best)) return best;
-    if (try_planes(problem, {tension_1}, tension, best)) return best;
-    if (try_planes(problem, {tension_1, tension_2}, tension, best)) return best;
-    if (try_planes(problem, {shear_13, tension_1}, shear_tension, best)) return best;
-    if (try_planes(problem, {shear_13, shear_12, tension_1}, shear_tension, best)) return best;
-    if (try_planes(problem, {shear_13, tension_1, tension_2}, shear_tension, best)) return best;
-    try_planes(problem, {shear_13, shear_23, tension_2}, shear_tension, best);
+    if (try_planes(problem, Active<shear_13>{}, YieldRegion::shear, best)) return best;
+    const Screen screen(problem);
+    const auto likely = [&](auto planes, YieldRegion region) {
+        return screen.lets_pass(planes) && try_planes(problem, planes, region, best);
+    };
+    const auto any = [&](auto planes, YieldRegion region) { return try_planes(problem, planes, region, best); };
+    if (!try_edges_and_corners(is_cut_off, has_tip, likely)) try_edges_and_corners(is_cut_off, has_tip, any);
     return best;
 }
 
@@ -185,12 +249,13 @@ MohrCoulomb mohr_coulomb(const ShearStrength& strength, double dilation_angle, d
 }
 
 PlasticReturn return_to_yield_surface(const Elasticity& elastic, const MohrCoulomb& material, const Vector4d& trial,
-                                      Matrix4d& tangent) {
+                                      Matrix4d* tangent) {
     const PrincipalFrame frame = principal_frame(trial);
-    const PrincipalReturn principal = return_principal(elastic, material, frame.stress);
-
-    tangent = frame.dyads * principal.tangent * frame.dyads.transpose() +
-              elastic.shear * spin_ratio(frame, principal, elastic.shear) * frame.spin * frame.spin.transpose();
+    const PrincipalReturn principal = return_principal(elastic, material, frame.stress, tangent != nullptr);
+    if (tangent != nullptr) {
+        *tangent = frame.dyads * principal.tangent * frame.dyads.transpose() +
+                   elastic.shear * spin_ratio(frame, principal, elastic.shear) * frame.spin * frame.spin.transpose();
+    }
 
     PlasticReturn result;
     result.stress = frame.dyads * principal.stress;

@@ -57,10 +57,9 @@ void return_unfinished(FreePoints& points, size_t first, size_t count, const Mat
         const size_t p = first + k;
         const MohrCoulomb material{block.cohesion[k], block.sin_friction[k], block.cos_friction[k],
                                    block.sin_dilation[k], block.tensile_strength[k]};
-        Eigen::Matrix4d tangent;
         const PlasticReturn result = return_to_yield_surface(
             {block.lame[k], block.shear[k]}, material,
-            {points[stress_xx][p], points[stress_yy][p], points[stress_zz][p], points[stress_xy][p]}, tangent);
+            {points[stress_xx][p], points[stress_yy][p], points[stress_zz][p], points[stress_xy][p]}, nullptr);
         points[stress_xx][p] = result.stress[0];
         points[stress_yy][p] = result.stress[1];
         points[stress_zz][p] = result.stress[2];
