@@ -23,21 +23,20 @@ using Eigen::Matrix4d;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-struct Plane {
-    Vector3d normal;
-    Vector3d flow;
-    double strength;  // Pa
-};
-
 // The shear planes 12 and 23 meet 13 where two principal stresses become equal; the other three cannot be active when sorted.
-enum PlaneName : Eigen::Index { shear_13, shear_12, shear_23, tension_1, tension_2, tension_3 };
-constexpr int plane_count = 6;
+enum PlaneName : int { shear_13, shear_12, shear_23, tension_1, tension_2, tension_3, plane_count };
+
+/// All planes, a column each in this order.
+struct Planes {
+    Eigen::Matrix<double, 3, plane_count> normals, flows;
+    Eigen::Matrix<double, plane_count, 1> strengths;  // Pa
+};
 
 /// The planes that a stress is returned to at once.
 template <PlaneName... names>
 struct Active {
     static constexpr int count = sizeof...(names);
-    static constexpr std::array<PlaneName, sizeof...(names)> name{names...};
+    static constexpr std::array<int, sizeof...(names)> columns{names...};
 };
 
 struct PrincipalReturn {
@@ -51,7 +50,7 @@ struct PrincipalReturn {
 struct PrincipalProblem {
     Matrix3d stiffness;
     Vector3d trial;
-    std::array<Plane, plane_count> planes;
+    Planes planes;
     double shear_modulus;  // Pa
     double tolerance;      // Pa
     bool wants_tangent;
@@ -64,34 +63,28 @@ double apex_stress(const MohrCoulomb& material) {
     return material.cohesion * material.cos_friction / material.sin_friction;
 }
 
-std::array<Plane, plane_count> yield_planes(const MohrCoulomb& material, double tensile_strength) {
+Planes yield_planes(const MohrCoulomb& material, double tensile_strength) {
     const double up = 1 + material.sin_friction;
     const double down = material.sin_friction - 1;
     const double flow_up = 1 + material.sin_dilation;
     const double flow_down = material.sin_dilation - 1;
     const double shear_strength = 2 * material.cohesion * material.cos_friction;
-    return {{{{up, 0, down}, {flow_up, 0, flow_down}, shear_strength},
-             {{up, down, 0}, {flow_up, flow_down, 0}, shear_strength},
-             {{0, up, down}, {0, flow_up, flow_down}, shear_strength},
-             {Vector3d::UnitX(), Vector3d::UnitX(), tensile_strength},
-             {Vector3d::UnitY(), Vector3d::UnitY(), tensile_strength},
-             {Vector3d::UnitZ(), Vector3d::UnitZ(), tensile_strength}}};
+    Planes planes;
+    planes.normals << up, up, 0, 1, 0, 0, 0, down, up, 0, 1, 0, down, 0, down, 0, 0, 1;
+    planes.flows << flow_up, flow_up, 0, 1, 0, 0, 0, flow_down, flow_up, 0, 1, 0, flow_down, 0, flow_down, 0, 0, 1;
+    planes.strengths << Vector3d::Constant(shear_strength), Vector3d::Constant(tensile_strength);
+    return planes;
 }
 
 // Returns by the given planes, keeps the result if it is the best so far, and says whether it is admissible. The second pass
 // removes the round-off of the first, which grows with lame / shear towards incompressibility.
-template <class Planes>
-bool try_planes(const PrincipalProblem& problem, Planes, YieldRegion region, PrincipalReturn& best) {
-    constexpr int n = Planes::count;
-    Eigen::Matrix<double, 3, n> normals;
-    Eigen::Matrix<double, 3, n> flows;
-    Eigen::Matrix<double, n, 1> strengths;
-    for (int k = 0; k < n; ++k) {
-        const Plane& plane = problem.planes[static_cast<size_t>(Planes::name[static_cast<size_t>(k)])];
-        normals.col(k) = plane.normal;
-        flows.col(k) = plane.flow;
-        strengths[k] = plane.strength;
-    }
+template <class These>
+bool try_planes(const PrincipalProblem& problem, These, YieldRegion region, PrincipalReturn& best) {
+    constexpr int n = These::count;
+    const Planes& planes = problem.planes;
+    const Eigen::Matrix<double, 3, n> normals = planes.normals(Eigen::all, These::columns);
+    const Eigen::Matrix<double, 3, n> flows = planes.flows(Eigen::all, These::columns);
+    const Eigen::Matrix<double, n, 1> strengths = planes.strengths(These::columns);
     const Eigen::Matrix<double, 3, n> stiff_flows = problem.stiffness * flows;
     const Eigen::Matrix<double, n, n> compliance = (normals.transpose() * stiff_flows).eval().inverse();
     Eigen::Matrix<double, n, 1> multipliers = Eigen::Matrix<double, n, 1>::Zero();
@@ -102,9 +95,8 @@ bool try_planes(const PrincipalProblem& problem, Planes, YieldRegion region, Pri
         stress -= stiff_flows * correction;
     }
 
-    double violation = -multipliers.minCoeff() * problem.shear_modulus;
-    for (const Plane& plane : problem.planes)
-        violation = std::max(violation, plane.normal.dot(stress) - plane.strength);
+    const double violation = std::max(-multipliers.minCoeff() * problem.shear_modulus,
+                                      (planes.normals.transpose() * stress - planes.strengths).maxCoeff());
     if (!(violation < best.violation)) return false;
 
     best.stress = stress;
@@ -120,34 +112,21 @@ bool try_planes(const PrincipalProblem& problem, Planes, YieldRegion region, Pri
 /// of any of them and what is left of the others' f.
 class Screen {
 public:
-    explicit Screen(const PrincipalProblem& problem) : problem_(problem) {
-        Eigen::Matrix<double, 3, plane_count> normals, flows;
-        for (int k = 0; k < plane_count; ++k) {
-            const Plane& plane = problem.planes[static_cast<size_t>(k)];
-            normals.col(k) = plane.normal;
-            flows.col(k) = plane.flow;
-            excess_[k] = plane.normal.dot(problem.trial) - plane.strength;
-        }
-        relief_.noalias() = normals.transpose() * (problem.stiffness * flows);
-    }
+    explicit Screen(const PrincipalProblem& problem)
+        : problem_(problem),
+          relief_(problem.planes.normals.transpose() * (problem.stiffness * problem.planes.flows)),
+          excess_(problem.planes.normals.transpose() * problem.trial - problem.planes.strengths) {}
 
-    template <class Planes>
-    [[nodiscard]] bool lets_pass(Planes) const {
+    template <class These>
+    [[nodiscard]] bool lets_pass(These) const {
         constexpr double round_off = 1e6;  // many times the tolerance, for what try_planes() removes in its second pass
-        constexpr int n = Planes::count;
-        Eigen::Matrix<double, n, n> active;
-        Eigen::Matrix<double, n, 1> excess;
-        for (int j = 0; j < n; ++j) {
-            for (int k = 0; k < n; ++k)
-                active(j, k) = relief_(Planes::name[static_cast<size_t>(j)], Planes::name[static_cast<size_t>(k)]);
-            excess[j] = excess_[Planes::name[static_cast<size_t>(j)]];
-        }
-        const Eigen::Matrix<double, n, 1> multipliers = active.inverse() * excess;
+        constexpr int n = These::count;
+        const Eigen::Matrix<double, plane_count, n> relief = relief_(Eigen::all, These::columns);
+        const Eigen::Matrix<double, n, n> active = relief(These::columns, Eigen::all);
+        const Eigen::Matrix<double, n, 1> multipliers = active.inverse() * excess_(These::columns);
         const double most = round_off * problem_.tolerance;
-        if (-multipliers.minCoeff() * problem_.shear_modulus > most) return false;
-        Eigen::Matrix<double, plane_count, 1> left = excess_;
-        for (int k = 0; k < n; ++k) left -= multipliers[k] * relief_.col(Planes::name[static_cast<size_t>(k)]);
-        return !(left.maxCoeff() > most);
+        return -multipliers.minCoeff() * problem_.shear_modulus <= most &&
+               (excess_ - relief * multipliers).maxCoeff() <= most;
     }
 
 private:
