@@ -25,23 +25,31 @@ double tan_degrees(double angle) { return std::tan(angle * std::numbers::pi / 18
 
 // --- from the scene --------------------------------------------------------------------------------------------------
 
-ExplicitSoil explicit_soil(const Solid& solid) {
+ExplicitSoil explicit_soil(const Soil& entry) {
+    const Solid& solid = entry.solid;
     ExplicitSoil soil;
     soil.elastic = elasticity(solid.young_modulus, solid.poisson_ratio);
     soil.yields = solid.model == SolidModel::mohr_coulomb;
     if (!soil.yields) return soil;
     soil.strength =
         mohr_coulomb(shear_strength(solid.strength, 0.0, 1.0), solid.dilation_angle, solid.tensile_strength);
-    if (solid.softening.slip <= 0) return soil;
-    soil.residual_cohesion = solid.softening.residual_cohesion;
-    soil.residual_sin_friction = sin_degrees(solid.softening.residual_friction_angle);
-    soil.softening_slip = solid.softening.slip;
+    if (solid.softening.slip > 0) {
+        soil.residual_cohesion = solid.softening.residual_cohesion;
+        soil.residual_sin_friction = sin_degrees(solid.softening.residual_friction_angle);
+        soil.softening_slip = solid.softening.slip;
+    }
+    const InertialFriction& inertial = solid.inertial_friction;
+    if (inertial.grain_diameter > 0) {
+        soil.friction_rise = sin_degrees(inertial.limit_friction_angle) - soil.strength.sin_friction;
+        soil.inertial_root =
+            inertial.grain_diameter * std::sqrt(entry.dry_density / (1 - entry.porosity)) / inertial.inertial_number;
+    }
     return soil;
 }
 
 std::vector<ExplicitSoil> explicit_soils(const Scene& scene) {
     std::vector<ExplicitSoil> soils;
-    for (const Soil& soil : scene.soils) soils.push_back(explicit_soil(soil.solid));
+    for (const Soil& soil : scene.soils) soils.push_back(explicit_soil(soil));
     return soils;
 }
 

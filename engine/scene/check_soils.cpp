@@ -107,13 +107,17 @@ void check_strength(const Check& check, const Strength& strength) {
                   "has neither cohesion nor friction; must have one");
 }
 
+/// Who has no use for what only ground that yields in motion uses.
+std::string user_of(const Solid& solid, bool is_dynamic) {
+    return is_dynamic ? name(solid.model) : "a ground whose regime is not dynamic";
+}
+
 void check_softening(const Check& check, const Solid& solid, bool is_dynamic) {
     const Softening& softening = solid.softening;
     const bool any = given(softening.residual_cohesion) || given(softening.residual_friction_angle) ||
                      given_positive(softening.slip);
     if (!any) return;
-    if (solid.model == SolidModel::elastic || !is_dynamic)
-        return check.unused(true, is_dynamic ? name(solid.model) : "a ground whose regime is not dynamic");
+    if (solid.model == SolidModel::elastic || !is_dynamic) return check.unused(true, user_of(solid, is_dynamic));
     check.at("residualCohesion").needed(given(softening.residual_cohesion), "softening");
     check.at("residualFrictionAngle").needed(given(softening.residual_friction_angle), "softening");
     check.at("slip").needed(given_positive(softening.slip), "softening");
@@ -129,9 +133,22 @@ void check_softening(const Check& check, const Solid& solid, bool is_dynamic) {
                      " degrees: must be at most the friction angle, " + value_text(solid.strength.friction_angle));
 }
 
+void check_inertial_friction(const Check& check, const Solid& solid, bool is_dynamic) {
+    const InertialFriction& friction = solid.inertial_friction;
+    if (!given(friction.limit_friction_angle) && !given_positive(friction.grain_diameter)) return;
+    if (solid.model == SolidModel::elastic || !is_dynamic) return check.unused(true, user_of(solid, is_dynamic));
+    check.at("grainDiameter").needed(given_positive(friction.grain_diameter), "inertialFriction");
+    check.at("limitFrictionAngle").needed(given(friction.limit_friction_angle), "inertialFriction");
+    check.at("limitFrictionAngle")
+        .require(!(friction.limit_friction_angle < solid.strength.friction_angle),
+                 "= " + value_text(friction.limit_friction_angle) + " degrees: must be at least the friction angle, " +
+                     value_text(solid.strength.friction_angle));
+}
+
 void check_solid(const Check& check, const Solid& solid, bool is_dynamic) {
     const std::string model = name(solid.model);
     check_softening(check.at("softening"), solid, is_dynamic);
+    check_inertial_friction(check.at("inertialFriction"), solid, is_dynamic);
     check.at("youngModulus").needed(given_positive(solid.young_modulus), model);
     check.at("poissonRatio").needed(given(solid.poisson_ratio), model);
     if (solid.model == SolidModel::mohr_coulomb) {

@@ -91,6 +91,12 @@ void fields(auto& visit, Is<Softening> auto& softening) {
     visit.positive("slip", softening.slip);
 }
 
+void fields(auto& visit, Is<InertialFriction> auto& friction) {
+    visit("limitFrictionAngle", friction.limit_friction_angle);
+    visit("inertialNumber", friction.inertial_number);
+    visit.positive("grainDiameter", friction.grain_diameter);
+}
+
 void fields(auto& visit, Is<Solid> auto& solid) {
     visit("model", solid.model);
     visit.positive("youngModulus", solid.young_modulus);
@@ -99,6 +105,7 @@ void fields(auto& visit, Is<Solid> auto& solid) {
     visit("dilationAngle", solid.dilation_angle);
     visit("tensileStrength", solid.tensile_strength);
     visit("softening", solid.softening);
+    visit("inertialFriction", solid.inertial_friction);
 }
 
 void fields(auto& visit, Is<Soil> auto& soil) {

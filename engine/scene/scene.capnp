@@ -253,6 +253,8 @@ struct Solid {
   # Largest tensile principal stress; left out: as much as the cone of Mohr-Coulomb bears.
   softening @6 :Softening;
   # How its strength falls with slip, for `mohrCoulomb` in a dynamic ground.
+  inertialFriction @7 :InertialFriction;
+  # How its friction grows with the rate of shear, for `mohrCoulomb` in a dynamic ground.
 }
 
 struct Softening {
@@ -264,6 +266,17 @@ struct Softening {
   # Required, at most the friction angle.
   slip @2 :Float64 = nan $limits(unit = "m", low = 1e-6, high = 1e3, slips = .lengthSlips);
   # Required: slip at which the strength is the residual one.
+}
+
+struct InertialFriction {
+  # Friction of dense granular flow, mu(I) of Jop, Forterre & Pouliquen (2006): the friction angle's sine grows with the inertial number
+  # I = rate of shear times grain diameter over sqrt(pressure / density of the grains), from that of the strength towards that of the limit.
+  limitFrictionAngle @0 :Float64 = nan $limits(unit = "degrees", low = 1, high = 80, slips = .angleSlips);
+  # Required, at least the friction angle: that at a boundless rate.
+  inertialNumber @1 :Float64 = 0.279 $limits(low = 1e-3, high = 1e3);
+  # I at which half of the way is gone; left out: that of glass beads.
+  grainDiameter @2 :Float64 = nan $limits(unit = "m", low = 1e-6, high = 10, slips = .lengthSlips);
+  # Required.
 }
 
 enum SolidModel {

@@ -116,6 +116,10 @@ def strength_cases():
     soil = dry(earth(cohesion=2e3, friction=30))
     soil["solid"]["softening"] = softening
     yield Case("dynamic/softens_at_once", dynamic(bank(), [soil], HELD, 0.25), SLIDE)
+    for diameter, number in ((1e-3, 0.279), (1e-6, 1e3), (0.25, 0.279), (10, 1e-3)):
+        soil = dry(earth(cohesion=50, friction=20))
+        soil["solid"]["inertialFriction"] = {"limitFrictionAngle": 80.0, "inertialNumber": number, "grainDiameter": diameter}
+        yield Case(f"dynamic/inertial_{diameter:g}_{number:g}", dynamic(bank(), [soil], HELD, 0.25), SLIDE)
     yield Case("dynamic/dilation_is_friction", dry_bank(friction=40, dilation=40, cohesion=50), SLIDE)
     resting = dry_bank(walls=RUBBING)
     resting["dynamics"]["restSpeed"] = 0.05

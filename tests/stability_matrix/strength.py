@@ -60,12 +60,16 @@ def relative_excess(beyond, scale, least=1e-300):
     return float(numpy.max(numpy.maximum(beyond, 0) / numpy.maximum(scale, floor)))
 
 
-def softened(solid):
-    """Entries of the strength from that without slip to the residual one: a point may be in any state between them."""
-    rest = solid.get("softening")
-    if not rest:
-        return [solid["strength"]]
+def reached(solid):
+    """Entries of the strength from that without slip to the residual one: a point may be in any state between them. Without slip, friction
+    that grows with the rate of shear may be at its limit, too, where c cos(phi) is what it was."""
+    rest, fast = solid.get("softening"), solid.get("inertialFriction")
     first = solid["strength"]
+    if fast:
+        cosines = [numpy.cos(numpy.radians(angle)) for angle in (first["frictionAngle"], fast["limitFrictionAngle"])]
+        return [first, {**first, "cohesion": first["cohesion"] * cosines[0] / cosines[1], "frictionAngle": fast["limitFrictionAngle"]}]
+    if not rest:
+        return [first]
     sines = [numpy.sin(numpy.radians(angle)) for angle in (first["frictionAngle"], rest["residualFrictionAngle"])]
     return [{**first, "suctionGainAngle": first["frictionAngle"], "cohesion": (1 - lost) * first["cohesion"] + lost * rest["residualCohesion"],
              "frictionAngle": float(numpy.degrees(numpy.arcsin((1 - lost) * sines[0] + lost * sines[1])))}
@@ -95,7 +99,7 @@ class YieldCheck:
         if self.is_wet:
             suction, saturation = self.engine.read("suction")[at], self._effective(self.engine.read("saturation"), self.soils)[at]
         states = [excess(stress[at], *strength_of(entries, suction, saturation), soil["solid"].get("tensileStrength", numpy.inf))
-                  for entries in softened(soil["solid"])]
+                  for entries in reached(soil["solid"])]
         return numpy.min([beyond for beyond, _ in states], axis=0), states[0][1]
 
     def _skeleton_stress(self):

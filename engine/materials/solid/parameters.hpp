@@ -31,6 +31,13 @@ struct Softening {
     double slip = 0;                                                            ///< m, at which they are reached
 };
 
+/// How friction grows with the rate of shear. Without a grain diameter it does not.
+struct InertialFriction {
+    double limit_friction_angle = std::numeric_limits<double>::quiet_NaN();  ///< degrees, at a boundless rate
+    double inertial_number = 0.279;                                          ///< -, at which half of the way is gone
+    double grain_diameter = 0;                                               ///< m
+};
+
 struct Solid {
     SolidModel model = SolidModel::mohr_coulomb;
     double young_modulus = 0;                                           ///< Pa
@@ -39,6 +46,7 @@ struct Solid {
     double dilation_angle = 0;                                          ///< degrees, mohr_coulomb only
     double tensile_strength = std::numeric_limits<double>::infinity();  ///< Pa; infinite: the cone's apex alone
     Softening softening;                                                ///< mohr_coulomb only
+    InertialFriction inertial_friction;                                 ///< mohr_coulomb only
 };
 
 }  // namespace talus

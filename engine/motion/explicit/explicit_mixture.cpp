@@ -48,7 +48,10 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
       points_(std::move(points)),
       gas_(gas),
       arrangement_(threads) {
-    for (const ExplicitSoil& soil : soils_) yields_ = yields_ || soil.yields;
+    for (const ExplicitSoil& soil : soils_) {
+        yields_ = yields_ || soil.yields;
+        is_inertial_ = is_inertial_ || soil.friction_rise > 0;
+    }
     for (const ExplicitHydraulics& soil : hydraulics_) grain_volume_.push_back(1 / soil.grain_density);
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
@@ -382,6 +385,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
                 add_apparent_cohesion(hydraulics_, points_, first, count, fluids.suction, fluids.effective_saturation,
                                       material);
             }
+            if (is_inertial_) add_inertial_friction(soils_, points_, first, count, gradient, material);
             return_stresses(points_, first, count, material);
         }
         for (size_t k = 0; k < count; ++k) {

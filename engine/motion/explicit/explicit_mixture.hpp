@@ -171,8 +171,9 @@ private:
     FluidExchange exchange_;
     GridMixture<has_gas, exchanges> nodes_;
     Arrangement arrangement_;
-    bool restarted_ = false;  // and the points not yet got what is due
-    bool yields_ = false;     // any soil
+    bool restarted_ = false;    // and the points not yet got what is due
+    bool yields_ = false;       // any soil
+    bool is_inertial_ = false;  // likewise: whether its friction grows with the rate of shear
     std::function<double(double)> rain_;
     double wave_speed_ = 0;  // m/s, the fastest when the points were arranged or looked at, were all pores full
 };

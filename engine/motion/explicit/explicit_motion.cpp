@@ -16,7 +16,10 @@ ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double grav
                                FreePoints points, int32_t threads, double rest_speed)
     : soils_(std::move(soils)), points_(std::move(points)), arrangement_(threads), rest_speed_(rest_speed) {
     if (rest_speed > 0) points_.quiet.resize(points_.count);
-    for (const ExplicitSoil& soil : soils_) yields_ = yields_ || soil.yields;
+    for (const ExplicitSoil& soil : soils_) {
+        yields_ = yields_ || soil.yields;
+        is_inertial_ = is_inertial_ || soil.friction_rise > 0;
+    }
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
     nodes_.gravity = gravity;
@@ -116,6 +119,7 @@ void ExplicitMotion::stress_and_forces(Strip strip, double dt) {
         strain_elastically(points_, first, count, dt, gradient, material);
         if (yields_) {
             set_strength(soils_, points_, first, count, nodes_.grid.cell_size, material);
+            if (is_inertial_) add_inertial_friction(soils_, points_, first, count, gradient, material);
             return_stresses(points_, first, count, material);
         }
         scatter_force(nodes_.grid, count, spline, points_[point_volume] + first, points_[stress_xx] + first,

@@ -64,10 +64,11 @@ private:
     FreePoints points_;
     GridMotion nodes_;
     Arrangement arrangement_;
-    bool yields_ = false;    // any soil
-    double rest_speed_ = 0;  // m/s
-    int32_t substeps_ = 0;   // since quiet ones were counted
-    double wave_speed_ = 0;  // m/s, the fastest when the points were arranged
+    bool yields_ = false;       // any soil
+    bool is_inertial_ = false;  // likewise: whether its friction grows with the rate of shear
+    double rest_speed_ = 0;     // m/s
+    int32_t substeps_ = 0;      // since quiet ones were counted
+    double wave_speed_ = 0;     // m/s, the fastest when the points were arranged
 };
 
 }  // namespace talus

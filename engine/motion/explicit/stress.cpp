@@ -68,6 +68,17 @@ void return_unfinished(FreePoints& points, size_t first, size_t count, const Mat
     }
 }
 
+/// sqrt(2 e:e) of the deviatoric strain rate e, 1/s.
+double rate_of_shear(const GradientBlock& gradient, size_t k) {
+    const double third = (gradient.xx[k] + gradient.yy[k]) / 3, shear = gradient.xy[k] + gradient.yx[k];
+    const double xx = gradient.xx[k] - third, yy = gradient.yy[k] - third;
+    return std::sqrt(2 * (xx * xx + yy * yy + third * third) + shear * shear);
+}
+
+double mean_pressure(const FreePoints& points, size_t p) {
+    return -(points[stress_xx][p] + points[stress_yy][p] + points[stress_zz][p]) / 3;
+}
+
 }  // namespace
 
 void set_elasticity(const std::vector<ExplicitSoil>& soils, const FreePoints& points, size_t first, size_t count,
@@ -95,6 +106,20 @@ void set_strength(const std::vector<ExplicitSoil>& soils, const FreePoints& poin
         block.sin_friction[k] += lost * (soil.residual_sin_friction - soil.strength.sin_friction);
         block.cos_friction[k] = std::sqrt(1 - block.sin_friction[k] * block.sin_friction[k]);
         block.sin_dilation[k] = std::min(block.sin_dilation[k], block.sin_friction[k]);
+    }
+}
+
+void add_inertial_friction(const std::vector<ExplicitSoil>& soils, const FreePoints& points, size_t first, size_t count,
+                           const GradientBlock& __restrict gradient, MaterialBlock& __restrict block) {
+    for (size_t k = 0; k < count; ++k) {
+        const ExplicitSoil& soil = soils[static_cast<size_t>(points.soil[first + k])];
+        const double pressure = mean_pressure(points, first + k);
+        if (!(pressure > 0)) continue;
+        const double rate = soil.inertial_root * rate_of_shear(gradient, k);
+        const double cohesive = block.cohesion[k] * block.cos_friction[k];
+        block.sin_friction[k] += soil.friction_rise * rate / (rate + std::sqrt(pressure));
+        block.cos_friction[k] = std::sqrt(1 - block.sin_friction[k] * block.sin_friction[k]);
+        block.cohesion[k] = cohesive / block.cos_friction[k];
     }
 }
 

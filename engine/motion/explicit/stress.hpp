@@ -17,7 +17,7 @@ namespace talus {
 inline constexpr MohrCoulomb boundless{std::numeric_limits<double>::infinity(), 0, 1, 0,
                                        std::numeric_limits<double>::infinity()};
 
-/// How a soil deforms, yields and softens. Its strength falls in proportion to the slip on a shear band, sqrt(3) times the plastic shear
+/// How a soil deforms, yields and flows. Its strength falls in proportion to the slip on a shear band, sqrt(3) times the plastic shear
 /// strain times the cell's size: the band is as wide as the cells allow, and what it dissipates does not depend on them
 /// (Pietruszczak & Mroz, Int. J. Numer. Methods Eng. 17, 1981).
 struct ExplicitSoil {
@@ -27,6 +27,8 @@ struct ExplicitSoil {
     double residual_cohesion = 0;      ///< Pa, after softening_slip
     double residual_sin_friction = 0;  ///< -, likewise
     double softening_slip = 0;         ///< m; 0: it does not soften
+    double friction_rise = 0;          ///< of sin phi at a boundless rate of shear; 0: it does not depend on the rate
+    double inertial_root = 0;          ///< sqrt(Pa) s: I / I_0 times the root of the pressure, over the rate of shear
 };
 
 // The arrays that these take never overlap, which __restrict tells the compiler, so that the loops are vectorised.
@@ -42,6 +44,12 @@ void set_elasticity(const std::vector<ExplicitSoil>& soils, const FreePoints& po
                     MaterialBlock& block);
 void set_strength(const std::vector<ExplicitSoil>& soils, const FreePoints& points, size_t first, size_t count,
                   double cell_size, MaterialBlock& block);
+
+/// sin phi grows by rise / (1 + I_0 / I), I = d |rate of shear| / sqrt(p / rho_s) at the elastic stress (Jop, Forterre & Pouliquen, Nature
+/// 441, 2006: where stress and rate have the same axes, the ratio mu of shear to normal stress in shear is sin phi). What cohesion adds to the
+/// strength, c cos phi, stays; so does that of ground in tension.
+void add_inertial_friction(const std::vector<ExplicitSoil>& soils, const FreePoints& points, size_t first, size_t count,
+                           const GradientBlock& gradient, MaterialBlock& block);
 
 /// Hooke's law on the stress turned by the step's rotation (Hughes & Winget 1980), and the change of volume, in dt (s); `gradient` is that
 /// of the velocity that the points came with, where they have come to.
