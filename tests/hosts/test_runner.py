@@ -99,6 +99,25 @@ BANK = {"name": "bank", "physics": {"regime": "auto"}, "water": {"bulkModulus": 
 HEAP["schedule"] = {"duration": 0.2, "step": 0.05, "outputs": [0, 0.1, 0.2]}
 
 
+class Samples(Folder):
+    def test_every_scene_is_sound(self):
+        for path in sorted(SCENES.glob("*.json")):
+            with self.subTest(path.stem):
+                done = run("check", path)
+                self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_columns_by_explicit_motion_take_in_the_rain(self):
+        for name in ("column_explicit", "column_three_phase"):
+            with self.subTest(name):
+                scene = json.loads((SCENES / f"{name}.json").read_text())
+                scene["schedule"] = {"duration": 1, "step": 0.5}
+                out = self.folder / name
+                done = run("run", self.scene(scene), "--out", out)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                report = json.loads((out / "report.json").read_text())["last"]
+                self.assertAlmostEqual(report["water_infiltrated"], 0.05 * 1e-4, delta=1e-12)
+
+
 class Run(Folder):
     def test_what_a_run_leaves(self):
         out = self.folder / "out"
