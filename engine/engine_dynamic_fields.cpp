@@ -24,7 +24,7 @@ constexpr std::array entries{
     PointEntry{"point_position", "m", "", 2, false, Needs::nothing},
     PointEntry{"point_volume", "m2", "", 1, false, Needs::nothing},
     PointEntry{"point_soil", "1", "", 1, false, Needs::nothing},
-    PointEntry{"point_pressure", "Pa", "soil_water__pressure", 1, false, Needs::water},
+    PointEntry{"point_pressure", "Pa", "soil_water__pressure", 1, true, Needs::water},
     PointEntry{"gas_pressure", "Pa", "", 1, true, Needs::gas},
     PointEntry{"relative_humidity", "1", "", 1, true, Needs::exchange},
     PointEntry{"dissolved_air", "kg m-3", "", 1, true, Needs::exchange},
@@ -189,7 +189,8 @@ std::vector<std::string> Engine::State::point_quantities() const {
     std::vector<std::string> names;
     for (const PointEntry& entry : entries) {
         if (!entry.probed || !has(entry, *simulation.dynamic())) continue;
-        if (entry.components == 1) names.emplace_back(entry.name);
+        const bool is_pressure = std::string_view(entry.name) == "point_pressure";  // probes of a mesh have the nodes'
+        if (entry.components == 1) names.emplace_back(is_pressure ? "pressure" : entry.name);
         for (size_t k = 0; k < static_cast<size_t>(entry.components) && entry.components > 1; ++k)
             names.push_back(std::string(entry.name) + (entry.components == 2 ? plane[k] : tensor[k]));
     }

@@ -88,20 +88,36 @@ def draw_contours(run, figure):
 
 # --- a dynamic ground: frames of its points ---
 
+def last_extent(run):
+    """Of the ground at the end, along x and y, m."""
+    return numpy.ptp(run.fields(run.times[-1]).points["position"][:, :2], axis=0)
+
+
+def is_upright(run):
+    width, height = last_extent(run)
+    return height > 2 * width
+
+
 def draw_frames(run, figure):
-    rows = figure.subplots(len(run.moving_times), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-    scale = figure.dpi * figure.get_figwidth()
-    for axes, time in zip(rows, run.moving_times):
+    """One below the other, or side by side where the ground is higher than wide."""
+    count, upright = len(run.moving_times), is_upright(run)
+    frames = figure.subplots(*((1, count) if upright else (count, 1)), sharex=True, sharey=True, squeeze=False).ravel()
+    extent, scale = last_extent(run)[int(upright)], figure.dpi * figure.get_size_inches()[int(upright)]
+    for axes, time in zip(frames, run.moving_times):
         points = run.fields(time).points
         distance = numpy.linalg.norm(points["displacement"], axis=1)
-        width = numpy.ptp(run.fields(run.times[-1]).points["position"][:, 0])
         spacing = numpy.sqrt(points["point_volume"].mean())
-        size = max((spacing / width * scale * 0.7) ** 2, 0.2)
+        size = max((spacing / extent * scale * 0.7) ** 2, 0.2)
         drawn = axes.scatter(points["position"][:, 0], points["position"][:, 1], c=distance, s=size, cmap="viridis", marker="s",
                              linewidths=0)
         figure.colorbar(drawn, ax=axes, label="displaced, m")
-        axes.set(title=time_text(time), ylabel="y, m", aspect="equal")
-    rows[-1].set_xlabel("x, m")
+        axes.set(title=time_text(time), aspect="equal")
+        axes.label_outer()
+    for axes in frames if upright else frames[-1:]:
+        axes.set_xlabel("x, m")
+        axes.locator_params(axis="x", nbins=2 if upright else "auto")
+    for axes in frames[:1] if upright else frames:
+        axes.set_ylabel("y, m")
 
 
 def draw_energy(run, figure):
@@ -171,7 +187,8 @@ def main():
     if run.times and run.report["engine"]["dimension"] == 1 and has_water:
         draw(run, "profiles", draw_profiles, (7, 4.5))
     if run.moving_times:
-        draw(run, "frames", draw_frames, (7, 2 * len(run.moving_times)))
+        across = 2 * len(run.moving_times)
+        draw(run, "frames", draw_frames, (across, 7) if is_upright(run) else (7, across))
         draw(run, "energy", draw_energy, (7, 5))
     if run.mesh_times and run.report["engine"]["dimension"] == 2:
         draw(run, "contours", draw_contours, (7, 9))

@@ -116,6 +116,7 @@ class Samples(Folder):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 report = json.loads((out / "report.json").read_text())["last"]
                 self.assertAlmostEqual(report["water_infiltrated"], 0.05 * 1e-4, delta=1e-12)
+                self.assertAlmostEqual(talus.Results(out).probes["base.pressure"][-1], -37975, delta=50)
 
 
 class Run(Folder):
