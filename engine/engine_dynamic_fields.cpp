@@ -55,12 +55,14 @@ const char* missing(Needs needs) {
 const PointEntry& find_entry(std::string_view name, const DynamicGround& ground) {
     const auto found =
         std::find_if(entries.begin(), entries.end(), [&](const PointEntry& entry) { return entry.name == name; });
-    if (found == entries.end())
+    if (found == entries.end()) {
         throw Error(Status::unknown_field, "a dynamic ground has no field '" + std::string(name) +
                                                "': it has no mesh, only fields of its points (see describe)");
-    if (!has(*found, ground))
+    }
+    if (!has(*found, ground)) {
         throw Error(Status::unknown_field,
                     "field '" + std::string(name) + "' is left out: the scene has no " + missing(found->needs));
+    }
     return *found;
 }
 
@@ -118,9 +120,10 @@ std::vector<double> derive_water(std::string_view name, const DynamicGround& gro
     if (name == "relative_humidity")
         return each_by_number(points, [&](size_t p) { return ground.relative_humidity(p); });
     if (name == "dissolved_air") return each_by_number(points, [&](size_t p) { return ground.dissolved_air(p); });
-    if (name == "suction")
+    if (name == "suction") {
         return each_by_number(points,
                               [&](size_t p) { return std::max(ground.gas_pressure(p) - ground.pressure(p), 0.0); });
+    }
     if (name == "water_content")
         return each_by_number(points, [&](size_t p) { return ground.porosity(p) * ground.saturation(p); });
     return each_by_number(points, [&](size_t p) { return ground.pressure(p); });

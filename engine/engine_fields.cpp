@@ -61,9 +61,10 @@ const FieldEntry& find_entry(std::string_view name, const Scene& scene) {
     const auto found =
         std::find_if(fields.begin(), fields.end(), [&](const FieldEntry& entry) { return entry.name == name; });
     if (found == fields.end()) throw Error(Status::unknown_field, "no field is named '" + std::string(name) + "'");
-    if (!has(*found, scene))
+    if (!has(*found, scene)) {
         throw Error(Status::unknown_field, "field '" + std::string(name) + "' is left out: the scene has no " +
                                                (found->needs == Needs::water ? "water" : "deforming skeleton"));
+    }
     return *found;
 }
 
@@ -189,9 +190,10 @@ void Engine::State::sample_cell(const FieldView& field, const CellPlace& place, 
         const auto share = Shape::values(at);
         const auto from_nodes = [&](const double* node_rows, size_t width, size_t k) {
             double value = 0;
-            for (size_t a = 0; a < Shape::nodes; ++a)
+            for (size_t a = 0; a < Shape::nodes; ++a) {
                 value += share[a] *
                          node_rows[static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(first) + a]) * width + k];
+            }
             return value;
         };
         if (field.location == Location::node) {
