@@ -10,14 +10,6 @@ import numpy
 # transition, a = 1.8 to 2.8.
 LUBE_RUN_OUT = {"slope": 1.2, "factor": 1.9, "power": 2 / 3, "change": 2.3}
 LUBE_HEIGHT = {"factor": 1.0, "power": 0.4, "change": 1.15}
-# Its sand comes to rest at 31 degrees, whose tangent is the ratio of shear to normal stress where ground is sheared along its surface. Without
-# dilation that ratio is the sine of the friction angle in plane strain (Rowe, Geotechnique 19, 1969).
-LUBE_REPOSE = 31.0  # degrees
-# By how much the ratio rises with the rate of shear, and the inertial number at half of that: Jop, Forterre & Pouliquen, Nature 441 (2006), for glass
-# beads; nothing was at hand for the sand.
-FRICTION_RISE, INERTIAL_NUMBER = 0.26, 0.279
-GRAIN = 0.001  # m
-
 # Lajeunesse, Monnier & Homsy, Phys. Fluids 17, 103302 (2005): glass beads of 1.15 mm, repose 22 degrees, in a channel 45 mm wide.
 LAJEUNESSE_RUN_OUT = {"slope": 1.8, "factor": 2.3, "power": 2 / 3, "change": 3.0}
 # "Failure Mechanism of True 2D Granular Flows" (2015): aluminium rods, no side walls; for a > 0.65, from its abstract.

@@ -26,15 +26,14 @@ def come_to_rest(engine, height):
     assert report["largest_velocity"] < 0.02 * numpy.sqrt(2 * 9.81 * height), "it still moves"
 
 
-def collapse(length, height, soil, base_angle):
+def collapse(length, height, soil, friction_angle):
     """The engine after the collapse of a column between a smooth wall and nothing, on a base with friction."""
     scene = read_scene("column_collapse")
     scene["ground"]["section"].update(terrain=[[0, height], [length, height]], base=[[0, 0], [length, 0]])
-    scene["boundaries"][0]["frictionAngle"] = base_angle
+    scene["boundaries"][0]["frictionAngle"] = friction_angle
     scene["dynamics"]["cellSize"] = length / COLUMN_CELLS
-    scene["soils"][0].update(soil)
-    friction_angle = scene["soils"][0]["solid"]["strength"]["frictionAngle"]
     scene["initial"]["k0"] = 1 - numpy.sin(numpy.radians(friction_angle))
+    scene["soils"][0].update(soil)
     del scene["probes"]
     engine = engine_from(scene)
     come_to_rest(engine, height)
@@ -46,22 +45,11 @@ def front(x, height, length):
     return x[height > THINNEST * length][-1] + 0.5 * (x[1] - x[0])
 
 
-def sand():
-    """Lube's."""
-    solid = dict(read_scene("column_collapse")["soils"][0]["solid"])
-    ratio = numpy.tan(numpy.radians(experiments.LUBE_REPOSE))
-    angle, limit = numpy.degrees(numpy.arcsin([ratio, ratio + experiments.FRICTION_RISE]))
-    solid["strength"] = {**solid["strength"], "frictionAngle": angle}
-    solid["inertialFriction"] = {"limitFrictionAngle": limit, "inertialNumber": experiments.INERTIAL_NUMBER,
-                                 "grainDiameter": experiments.GRAIN}
-    return {"solid": solid}
-
-
 def lube_rows():
     length = 0.1
     for aspect in (0.5, 1, 2, 4):
         with Clock() as clock:
-            engine = collapse(length, aspect * length, sand(), experiments.LUBE_REPOSE)
+            engine = collapse(length, aspect * length, {}, 31)
             x, height = thickness(engine)
         run_out = front(x, height, length) / length - 1
         for quantity, found, wanted in (("run-out", run_out, experiments.run_out(aspect)),
