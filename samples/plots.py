@@ -88,21 +88,13 @@ def draw_contours(run, figure):
 
 # --- a dynamic ground: frames of its points ---
 
-def last_extent(run):
-    """Of the ground at the end, along x and y, m."""
-    return numpy.ptp(run.fields(run.times[-1]).points["position"][:, :2], axis=0)
-
-
-def is_upright(run):
-    width, height = last_extent(run)
-    return height > 2 * width
-
-
 def draw_frames(run, figure):
     """One below the other, or side by side where the ground is higher than wide."""
-    count, upright = len(run.moving_times), is_upright(run)
+    width, height = numpy.ptp(run.fields(run.times[-1]).points["position"][:, :2], axis=0)
+    count, upright = len(run.moving_times), height > 2 * width
+    figure.set_size_inches(*((2 * count, 7) if upright else (7, 2 * count)))
     frames = figure.subplots(*((1, count) if upright else (count, 1)), sharex=True, sharey=True, squeeze=False).ravel()
-    extent, scale = last_extent(run)[int(upright)], figure.dpi * figure.get_size_inches()[int(upright)]
+    extent, scale = (height if upright else width), figure.dpi * 7
     for axes, time in zip(frames, run.moving_times):
         points = run.fields(time).points
         distance = numpy.linalg.norm(points["displacement"], axis=1)
@@ -187,8 +179,7 @@ def main():
     if run.times and run.report["engine"]["dimension"] == 1 and has_water:
         draw(run, "profiles", draw_profiles, (7, 4.5))
     if run.moving_times:
-        across = 2 * len(run.moving_times)
-        draw(run, "frames", draw_frames, (across, 7) if is_upright(run) else (7, across))
+        draw(run, "frames", draw_frames, None)  # its size depends on the ground
         draw(run, "energy", draw_energy, (7, 5))
     if run.mesh_times and run.report["engine"]["dimension"] == 2:
         draw(run, "contours", draw_contours, (7, 9))
