@@ -14,6 +14,7 @@ Options options_of(talus_engine& engine) {
     Options options;
     options.tolerance = engine.options.tolerance;
     options.threads = engine.options.threads;
+    options.stop_at_motion = engine.options.stop_at_motion != 0;
     if (engine.options.log != nullptr) {
         options.log = [&engine](int32_t level, const std::string& text) {
             const HostFloatingPoint floating_point(*engine.host);

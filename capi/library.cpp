@@ -35,6 +35,7 @@ const char* talus_status_name(talus_status status) {
         case TALUS_CANCELLED: return "cancelled";
         case TALUS_OUT_OF_RAIN: return "out_of_rain";
         case TALUS_OUTSIDE: return "outside";
+        case TALUS_ENDED_EARLY: return "ended_early";
         case TALUS_INVALID_HANDLE: return "invalid_handle";
         case TALUS_INVALID_ARGUMENT: return "invalid_argument";
         case TALUS_INVALID_SCENE: return "invalid_scene";

@@ -107,7 +107,8 @@ bool lies_in_ground(const ProbeTrack& probe) { return probe.cell_place.cell >= 0
 Engine::State::State(std::shared_ptr<const Scene> scene_in, Options options_in)
     : scene(validated(std::move(scene_in))),
       options(std::move(options_in)),
-      simulation(*scene, options.tolerance > 0 ? options.tolerance : scene->numerics.tolerance, options.threads),
+      simulation(*scene, options.tolerance > 0 ? options.tolerance : scene->numerics.tolerance, options.threads,
+                 options.stop_at_motion),
       locator(simulation.reference_mesh()) {
     check_boundaries_touch(simulation, *scene);
     if (simulation.dynamic() != nullptr) number_point_soils();
@@ -238,16 +239,17 @@ Status Engine::advance_to(double until, StepReport& report) {
         return Status::cancelled;
     }
 
-    const bool out_of_rain = until > state.simulation.forcing.rain_end();
+    const double reached = state.simulation.state().time;
+    const bool out_of_rain = reached > state.simulation.forcing.rain_end();
     if (out_of_rain) state.simulation.note_rain_end();
-    state.time = until;
+    state.time = reached;
     ++state.epoch;
     state.derived.clear();
     state.nearest.reset();
     const StepCounts& counts = state.simulation.counts;
     const FlowStatistics flow = state.simulation.flow_statistics();
     StepReport& last = state.report;
-    last.time = until;
+    last.time = reached;
     last.regime = state.simulation.state().equilibrium_lost ? Regime::equilibrium_lost : Regime::quasi_static;
     last.flow_substeps = flow.substeps - flow_before.substeps;
     last.flow_failures = flow.failures - flow_before.failures;
@@ -270,6 +272,7 @@ Status Engine::advance_to(double until, StepReport& report) {
     state.record_probes();
     last.seconds_total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report = last;
+    if (reached < until) return Status::ended_early;
     return out_of_rain ? Status::out_of_rain : Status::ok;
 }
 

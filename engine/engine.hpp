@@ -94,6 +94,8 @@ struct FieldView {
 struct Options {
     double tolerance = 0;  ///< 0: the scene's
     int32_t threads = 1;   ///< of a dynamic ground; 0: one. Results do not depend on it
+    bool stop_at_motion =
+        false;  ///< whether a step ends where ground of the regime auto starts to move or comes to rest
     std::function<void(int32_t level, const std::string& text)> log;
     /// Called inside a step with the fraction done; true cancels.
     std::function<bool(double fraction)> progress;
@@ -120,7 +122,8 @@ public:
                            std::span<const double> value);
 
     // step
-    /// Carries the state dt seconds on. ok, or cancelled (undone), or out_of_rain (done, with the last rate held).
+    /// Carries the state dt seconds on. ok, or cancelled (undone), out_of_rain (done, with the last rate held), or ended_early (done up to
+    /// the report's time, where stop_at_motion asks for it).
     Status step(double dt, StepReport& report);
     Status advance_to(double time, StepReport& report);  ///< the same, landing on the time bit for bit
     void cancel() noexcept;                              ///< any thread: ends the step that runs, or else the next one

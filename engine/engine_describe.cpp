@@ -102,6 +102,7 @@ std::string Engine::State::describe() const {
     json["bytes"] = bytes_held(simulation);
     json["schedule"] = {{"duration", number_or_null(s.schedule.duration)},
                         {"step", number_or_null(s.schedule.step)},
+                        {"motion_step", number_or_null(s.schedule.motion_step)},
                         {"outputs", s.schedule.outputs}};
     json["zones"] = ordered_json::array();
     for (const RainZone& zone : s.surface.zones)

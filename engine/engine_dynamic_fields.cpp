@@ -1,5 +1,4 @@
 // The fields of a dynamic ground: those of its material points, in the order of their numbers, which never changes.
-#include "background/shape.hpp"
 #include "engine_state.hpp"
 #include "error.hpp"
 
@@ -155,22 +154,9 @@ void Engine::State::number_point_soils() {
 
 void Engine::State::follow_points() {
     number_point_soils();
-    const Mesh& mesh = simulation.mesh();
-    for (ProbeTrack& probe : probes) {
-        const auto cell = static_cast<size_t>(probe.cell_place.cell);
-        const int32_t first = mesh.cell_start[cell];
-        with_shape(mesh.cell_start[cell + 1] - first, [&](auto shape) {
-            using Shape = decltype(shape);
-            if constexpr (Shape::dimension == 2) {
-                typename Shape::Natural at{};
-                std::copy_n(probe.cell_place.natural.begin(), Shape::dimension, at.begin());
-                const auto places =
-                    gather_places<Shape>(mesh.position.data(), &mesh.cell_nodes[static_cast<size_t>(first)]);
-                const auto [x, y] = place_in_cell<Shape>(places, at);
-                probe.point = nearest_point(x, y);
-            }
-        });
-    }
+    // By where they lay at the start: within the step they may have moved already.
+    const NearestPlace start(simulation.dynamic()->start_position(), simulation.dynamic()->cell_size());
+    for (ProbeTrack& probe : probes) probe.point = start.find(probe.place[0], probe.place[1]);
     description = describe();
 }
 

@@ -13,6 +13,7 @@ enum class Status : int32_t {
     cancelled = 1,    ///< the host asked to stop; the step was undone
     out_of_rain = 2,  ///< the step went past the end of the rain series; it was done with the last rate held
     outside = 3,      ///< some places lie outside the ground; their values are NaN
+    ended_early = 4,  ///< the step was done up to where ground began to move or came to rest
     invalid_handle = -1,
     invalid_argument = -2,
     invalid_scene = -3,

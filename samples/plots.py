@@ -11,6 +11,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
+from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.tri import Triangulation
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "bindings/python"))
@@ -88,28 +89,70 @@ def draw_contours(run, figure):
 
 # --- a dynamic ground: frames of its points ---
 
+def spread(numbers, most):
+    """At most so many of them, evenly, the first and the last among them."""
+    return [numbers[i] for i in sorted({round(i) for i in numpy.linspace(0, len(numbers) - 1, min(most, len(numbers)))})]
+
+
+def displaced(points):
+    return numpy.linalg.norm(points["displacement"], axis=1)
+
+
+def draw_points(axes, points, extent, inches, **options):
+    """Each as a square, in the colour of how far it has come."""
+    spacing = numpy.sqrt(points["point_volume"].mean())
+    size = max((spacing / extent * inches * 72 * 0.9) ** 2, 0.2)  # in points of a seventy-second of an inch
+    x, y = points["position"][:, 0], points["position"][:, 1]
+    return axes.scatter(x, y, c=displaced(points), s=size, cmap="viridis", marker="s", linewidths=0, **options)
+
+
+def motion_time_text(run, time):
+    """Of ground that stood at first: since the motion began."""
+    began = next((event["time"] for event in run.report["events"] if event["kind"] == "motion_started"), None)
+    return time_text(time) if began is None else f"{time_text(round(began, 1))} and {time - began:.1f} s"
+
+
 def draw_frames(run, figure):
     """One below the other, or side by side where the ground is higher than wide."""
-    width, height = numpy.ptp(run.fields(run.times[-1]).points["position"][:, :2], axis=0)
-    count, upright = len(run.moving_times), height > 2 * width
+    width, height = numpy.ptp(run.fields(run.moving_times[-1]).points["position"][:, :2], axis=0)
+    times, upright = spread(run.moving_times, 8), height > 2 * width
+    count = len(times)
     figure.set_size_inches(*((2 * count, 7) if upright else (7, 2 * count)))
     frames = figure.subplots(*((1, count) if upright else (count, 1)), sharex=True, sharey=True, squeeze=False).ravel()
-    extent, scale = (height if upright else width), figure.dpi * 7
-    for axes, time in zip(frames, run.moving_times):
-        points = run.fields(time).points
-        distance = numpy.linalg.norm(points["displacement"], axis=1)
-        spacing = numpy.sqrt(points["point_volume"].mean())
-        size = max((spacing / extent * scale * 0.7) ** 2, 0.2)
-        drawn = axes.scatter(points["position"][:, 0], points["position"][:, 1], c=distance, s=size, cmap="viridis", marker="s",
-                             linewidths=0)
+    for axes, time in zip(frames, times):
+        drawn = draw_points(axes, run.fields(time).points, height if upright else width, 5)
         figure.colorbar(drawn, ax=axes, label="displaced, m")
-        axes.set(title=time_text(time), aspect="equal")
+        axes.set(title=motion_time_text(run, time), aspect="equal")
         axes.label_outer()
     for axes in frames if upright else frames[-1:]:
         axes.set_xlabel("x, m")
         axes.locator_params(axis="x", nbins=2 if upright else "auto")
     for axes in frames[:1] if upright else frames:
         axes.set_ylabel("y, m")
+
+
+def draw_animation(run, path):
+    """The motion, as an animated picture."""
+    times = spread(run.moving_times, 100)
+    frames = [run.fields(time).points for time in times]
+    low = numpy.min([points["position"][:, :2].min(axis=0) for points in frames], axis=0)
+    high = numpy.max([points["position"][:, :2].max(axis=0) for points in frames], axis=0)
+    width, height = high - low
+    figure, axes = plt.subplots(figsize=(8, 1.2 + 6.5 * min(height / width, 1)), dpi=100)
+    farthest = max(displaced(points).max() for points in frames)
+    drawn = draw_points(axes, frames[0], max(width, height), 6.5, vmin=0, vmax=farthest)
+    figure.colorbar(drawn, ax=axes, label="displaced, m")
+    margin = 0.02 * max(width, height)
+    axes.set(xlabel="x, m", ylabel="y, m", aspect="equal", xlim=(low[0] - margin, high[0] + margin),
+             ylim=(low[1] - margin, high[1] + margin))
+
+    def show(k):
+        drawn.set_offsets(frames[k]["position"][:, :2])
+        drawn.set_array(displaced(frames[k]))
+        axes.set_title(motion_time_text(run, times[k]))
+
+    FuncAnimation(figure, show, len(frames)).save(path, PillowWriter(fps=8))
+    plt.close(figure)
 
 
 def draw_energy(run, figure):
@@ -181,6 +224,7 @@ def main():
     if run.moving_times:
         draw(run, "frames", draw_frames, None)  # its size depends on the ground
         draw(run, "energy", draw_energy, (7, 5))
+        draw_animation(run, run.folder / "motion.gif")
     if run.mesh_times and run.report["engine"]["dimension"] == 2:
         draw(run, "contours", draw_contours, (7, 9))
     if run.probes:

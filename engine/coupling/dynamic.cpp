@@ -17,8 +17,11 @@ namespace {
 
 constexpr int64_t substeps_a_look = 16;
 constexpr double rest_share = 1e-3;  // of the largest kinetic energy of the motion: below it for
-constexpr double rest_time = 1;      // s, the ground rests
-constexpr double most_nodes = 2e7;   // of the grid: 1.3 GB
+constexpr double rest_time = 1;      // s, the ground rests;
+constexpr double slow_speed =
+    1e-2;  // or where no point is faster than so much of the speed sqrt(g h) of a fall through a cell
+constexpr double slow_time = 30;    // for so much of its time sqrt(h / g): what starts to slide is slow, too
+constexpr double most_nodes = 2e7;  // of the grid: 1.3 GB
 
 double sin_degrees(double angle) { return std::sin(angle * std::numbers::pi / 180); }
 double tan_degrees(double angle) { return std::tan(angle * std::numbers::pi / 180); }
@@ -360,6 +363,9 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
         start_position_[2 * number] = points[position_x][p];
         start_position_[2 * number + 1] = points[position_y][p];
     }
+    watch_.moved_last = watch_.fast_last = handover.time;
+    slow_speed_ = slow_speed * std::sqrt(scene.gravity * cell_size());
+    slow_time_ = slow_time * std::sqrt(cell_size() / scene.gravity);
     if (!handover.displacement.empty()) subtract_displacement(mesh, handover.displacement, points, start_position_);
 }
 
@@ -368,7 +374,6 @@ bool DynamicGround::advance(double from, double until, const RainAt& rain, const
     substeps_ = 0;
     peak_velocity_ = 0;
     rests_ = false;
-    watch_.moved_last = std::max(watch_.moved_last, from);
     std::visit([](auto& motion) { motion.restart(); }, motion_);  // what follows depends on the points alone
     return std::visit(
         [&](auto& motion) {
@@ -416,12 +421,14 @@ void DynamicGround::look(const Moving& motion, double time) {
     check_pores(time);
     if (static_cast<double>(motion.grid().nodes()) > most_nodes)
         stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");
-    peak_velocity_ = std::max(peak_velocity_, largest_speed(points));
+    const double speed = largest_speed(points);
+    peak_velocity_ = std::max(peak_velocity_, speed);
     if (!may_rest_) return;
     const double kinetic = motion.energies().kinetic;
     watch_.peak_energy = std::max(watch_.peak_energy, kinetic);
     if (kinetic > rest_share * watch_.peak_energy) watch_.moved_last = time;
-    rests_ = time - watch_.moved_last >= rest_time;
+    if (speed > slow_speed_) watch_.fast_last = time;
+    rests_ = time - watch_.moved_last >= rest_time || time - watch_.fast_last >= slow_time_;
 }
 
 void DynamicGround::restore(const FreePoints& points, const RestWatch& watch) {

@@ -35,6 +35,7 @@ struct Handover {
     std::span<const double> displacement{};  ///< of the nodes since the start, m; empty: none
     std::vector<double> soil_mass{};         ///< of each soil, kg per metre of thickness; empty: as its density says
     double water = 0;                        ///< m3 per metre of thickness; 0: as the pressures say
+    double time = 0;                         ///< when, s
 };
 
 class DynamicGround {
@@ -53,7 +54,8 @@ public:
     [[nodiscard]] const RestWatch& rest_watch() const { return watch_; }
 
     [[nodiscard]] double time() const { return time_; }  ///< that the last advance came to, s
-    /// Whether the last advance ended because the kinetic energy had been below a thousandth of its peak for a second.
+    /// Whether the last advance ended because the kinetic energy had been below a thousandth of its peak for a second, or no point faster than a
+    /// hundredth of sqrt(g h), the speed of a fall through a cell, for 30 sqrt(h / g).
     [[nodiscard]] bool rests() const { return rests_; }
     [[nodiscard]] double rain_on(const RainAt& rain) const;  ///< m3/s, on the columns of the grid that hold ground
 
@@ -110,6 +112,8 @@ private:
     std::vector<double> grain_density_;  // per soil, kg/m3
     std::vector<double> start_position_;
     bool may_rest_ = false;  // whether the motion ends where it rests
+    double slow_speed_ = 0;  // m/s: where no point is faster for the
+    double slow_time_ = 0;   // s, the motion ends, too
     bool rests_ = false;
     double time_ = 0;  // s
     RestWatch watch_;

@@ -24,6 +24,7 @@ struct FlowWatch {
 struct RestWatch {
     double peak_energy = 0;  ///< J, kinetic, since the motion began
     double moved_last = 0;   ///< s, when the kinetic energy was last above the share of it that counts as rest
+    double fast_last = 0;    ///< s, when a point was last faster than what counts as slow
 };
 
 struct GroundState {

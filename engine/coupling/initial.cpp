@@ -39,11 +39,12 @@ double suction_of(const HydraulicTable& table, const Soil& soil, size_t number, 
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene, double tolerance, int32_t threads)
+Simulation::Simulation(const Scene& scene, double tolerance, int32_t threads, bool stop_at_motion)
     : forcing(scene),
       scene_(scene),
       tolerance_(tolerance),
       threads_(threads),
+      stop_at_motion_(stop_at_motion),
       mesh_(build_mesh(scene)),
       reference_mesh_(mesh_) {
     state_.points = make_points(mesh_);

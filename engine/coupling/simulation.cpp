@@ -52,7 +52,7 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
                     state_.exchange_step = whole;
                     if (scene_.physics.regime != MotionRegime::automatic) break;
                     start_motion();
-                    return advance_dynamically(until, cancelled);
+                    return stop_at_motion_ || advance_dynamically(until, cancelled);
                 }
                 break;
             case Exchange::flow_stopped:
@@ -69,7 +69,7 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
 
 // From the last state in equilibrium. That stays as it is, so that a step that fails later can go back to it.
 void Simulation::start_motion() {
-    Handover handover{state_.flow.pressure, state_.displacement, {}, 0};
+    Handover handover{state_.flow.pressure, state_.displacement, {}, 0, state_.time};
     handover.soil_mass.assign(scene_.soils.size(), 0.0);
     for (size_t p = 0; p < initial_volume_.size(); ++p) {
         const auto soil = static_cast<size_t>(state_.points.soil[p]);
@@ -106,6 +106,7 @@ bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
             const MotionReport report = dynamic_->report();
             happenings.push_back(
                 {HappeningKind::came_to_rest, state_.time, {report.front_x, 0.0}, report.sliding_volume});
+            if (stop_at_motion_) return true;
         }
     }
     return true;

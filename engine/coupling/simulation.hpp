@@ -52,9 +52,10 @@ struct Happening {
 class Simulation {
 public:
     /// Builds the ground and its initial state. Throws Error(invalid_scene) where there is none.
-    Simulation(const Scene& scene, double tolerance, int32_t threads);
+    Simulation(const Scene& scene, double tolerance, int32_t threads, bool stop_at_motion);
 
-    /// Carries the state to `until` (s). False when `cancelled(fraction)` said so. Throws Error(not_converged) when a solver stops. In both
+    /// Carries the state to `until` (s), or with stop_at_motion to where ground of the regime auto starts to move or comes to rest.
+    /// False when `cancelled(fraction)` said so. Throws Error(not_converged) when a solver stops. In both
     /// cases the caller puts the state back with restore().
     bool advance(double until, const Cancelled& cancelled);
 
@@ -145,6 +146,7 @@ private:
     const Scene& scene_;
     double tolerance_;
     int32_t threads_;
+    bool stop_at_motion_;
     Mesh mesh_;
     Mesh reference_mesh_;
     GroundState state_;

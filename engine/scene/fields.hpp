@@ -217,6 +217,7 @@ void fields(auto& visit, Is<Dynamics> auto& dynamics) {
 void fields(auto& visit, Is<Schedule> auto& schedule) {
     visit("duration", schedule.duration);
     visit("step", schedule.step);
+    visit("motionStep", schedule.motion_step);
     visit("outputs", schedule.outputs);
 }
 

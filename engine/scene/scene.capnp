@@ -556,6 +556,8 @@ struct Schedule {
   # The host's step; at most the duration.
   outputs @2 :List(Float64) $limits(unit = "s", low = 0, high = 1e11);
   # Times of the field files, increasing, at most the duration.
+  motionStep @3 :Float64 = nan $limits(unit = "s", low = 1e-9, high = 1e11);
+  # While ground of the regime auto moves: the host's step, after each of which the fields are written. Left out: nothing changes as it moves.
 }
 
 struct Probe {

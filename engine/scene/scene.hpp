@@ -194,6 +194,7 @@ struct Dynamics {
 struct Schedule {
     double duration = unset;      ///< s
     double step = unset;          ///< s, the host's step
+    double motion_step = unset;   ///< s, the host's step while ground of the regime auto moves
     std::vector<double> outputs;  ///< s, times of the field files
 };
 

@@ -189,10 +189,15 @@ void check_schedule(const Check& scene_check, const Scene& scene) {
     const Schedule& schedule = scene.schedule;
     check.at("step").needed(given(schedule.step) || !given(schedule.duration), "a duration");
     check.at("duration")
-        .needed(given(schedule.duration) || (!given(schedule.step) && schedule.outputs.empty()), "a step or an output");
+        .needed(given(schedule.duration) ||
+                    (!given(schedule.step) && !given(schedule.motion_step) && schedule.outputs.empty()),
+                "a step or an output");
     check.at("step").require(
         !(schedule.step > schedule.duration),
         "= " + value_text(schedule.step) + " s: must be at most the duration, " + value_text(schedule.duration) + " s");
+    check.at("motionStep")
+        .unused(given(schedule.motion_step) && scene.physics.regime != MotionRegime::automatic,
+                "a ground whose regime is not auto");
     check_increasing(check.at("outputs"), schedule.outputs);
     const auto late = std::find_if(schedule.outputs.begin(), schedule.outputs.end(),
                                    [&](double time) { return time > schedule.duration; });

@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <utility>
 #include <vector>
 
 namespace runner {
@@ -47,6 +48,7 @@ public:
 struct Schedule {
     double duration = 0;          ///< s
     double step = 0;              ///< s
+    double motion_step = 0;       ///< s, while ground of the regime auto moves; 0: as always
     std::vector<double> outputs;  ///< s
 };
 
@@ -55,25 +57,27 @@ Schedule schedule_of(const Json& description, const RunSettings& settings) {
     if (given.at("duration").is_null()) {
         throw std::runtime_error(settings.scene + ": schedule.duration is missing, so there is nothing to follow");
     }
-    Schedule schedule{given.at("duration"), 0, given.at("outputs")};
+    Schedule schedule{given.at("duration"), 0, 0, given.at("outputs")};
     if (!settings.step && given.at("step").is_null()) {
         throw std::runtime_error(settings.scene + ": schedule.step is missing; give --step");
     }
     schedule.step = settings.step ? *settings.step : given.at("step").get<double>();
+    if (!given.at("motion_step").is_null()) schedule.motion_step = given.at("motion_step");
     if (schedule.outputs.empty()) schedule.outputs = {0, schedule.duration};
     return schedule;
 }
 
-/// The next time to stop at: a multiple of the step, an output or the end. A multiple that is but rounding away from an output
-/// is that output.
-double next_stop(double time, const Schedule& schedule) {
-    const double slack = 1e-9 * schedule.step;
+/// The next time to stop at: a multiple of the step, or a step of the motion from now on where the ground moves; an output; or the end. What is but
+/// rounding away from an output is that output.
+double next_stop(double time, const Schedule& schedule, bool moves) {
+    const double slack = 1e-9 * (moves ? schedule.motion_step : schedule.step);
     double next = schedule.duration;
     for (const double output : schedule.outputs) {
         if (output > time + slack) next = std::min(next, output);
     }
-    const double multiple = (std::floor((time + slack) / schedule.step) + 1) * schedule.step;
-    return multiple < next - slack ? multiple : next;
+    const double step_end =
+        moves ? time + schedule.motion_step : (std::floor((time + slack) / schedule.step) + 1) * schedule.step;
+    return step_end < next - slack ? step_end : next;
 }
 
 bool is_output(double time, const Schedule& schedule) {
@@ -108,8 +112,9 @@ void write_probes(const Run& run) {
 
 void advance(Run& run, Progress& progress) {
     if (is_output(0, run.schedule)) run.fields.write(run.engine);
+    bool moves = false;
     for (double time = 0; time < run.schedule.duration; time = run.last.time) {
-        const double next = next_stop(time, run.schedule);
+        const double next = next_stop(time, run.schedule, moves);
         progress.begin_step(time, next);
         const talus_status status = check(talus_engine_advance_to(run.engine.get(), next, &run.last));
         if (status == TALUS_CANCELLED) {
@@ -119,7 +124,8 @@ void advance(Run& run, Progress& progress) {
         }
         run.steps.push_back(report_json(run.last));
         progress.end_step(run.last);
-        if (is_output(run.last.time, run.schedule)) {
+        const bool moved = std::exchange(moves, run.schedule.motion_step > 0 && run.last.regime == TALUS_DYNAMIC);
+        if (moves || moved || is_output(run.last.time, run.schedule)) {
             run.fields.write(run.engine);
             write_probes(run);
         }
@@ -148,6 +154,7 @@ void write_report(const Run& run, const RunSettings& settings, const std::string
 
 talus_options options_for(const RunSettings& settings, Progress*& progress) {
     talus_options options = TALUS_OPTIONS_INIT;
+    options.stop_at_motion = 1;
     options.tolerance = settings.tolerance.value_or(0);
     options.threads = settings.threads;
     options.progress = [](void* user, double fraction) -> int32_t {

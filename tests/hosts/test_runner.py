@@ -95,7 +95,7 @@ BANK = {"name": "bank", "physics": {"regime": "auto"}, "water": {"bulkModulus": 
         "boundaries": [{"side": "base", "motion": "fixed"}, {"side": "left", "motion": "roller"}, {"side": "right", "motion": "roller"}],
         "surface": {"zones": [{"name": "rain", "time": [0], "rate": [3e-5]}]}, "initial": {"flow": "suction", "suction": 2e4},
         "dynamics": {"cellSize": 0.5}, "numerics": {"tolerance": 0.1}, "probes": [{"name": "A", "place": [3.5, 3]}],
-        "schedule": {"duration": 7800, "step": 600, "outputs": [0, 6000, 7200]}}
+        "schedule": {"duration": 7800, "step": 600, "motionStep": 0.5, "outputs": [0, 6000, 7200]}}
 HEAP["schedule"] = {"duration": 0.2, "step": 0.05, "outputs": [0, 0.1, 0.2]}
 
 
@@ -177,7 +177,11 @@ class Run(Folder):
         done = run("run", self.scene(BANK), "--out", out)
         self.assertEqual(done.returncode, 0, done.stderr)
         results = talus.Results(out)
-        self.assertEqual((results.mesh_times, results.moving_times), ([0, 6000], [7200]))
+        self.assertEqual(results.mesh_times, [0, 6000])
+        begun, rested = (event["time"] for event in results.report["events"][1:])
+        moving = results.moving_times  # the start of the motion, each of its steps, its end, and the output after it
+        self.assertEqual((moving[0], moving[-2], moving[-1]), (begun, rested, 7200))
+        self.assertEqual(moving[:-2], [begun + 0.5 * k for k in range(len(moving) - 2)])
         self.assertEqual(results.report["last"]["regime"], "at_rest")
         kinds = [event["kind"] for event in results.report["events"]]
         self.assertEqual(kinds, ["loss_of_equilibrium", "motion_started", "came_to_rest"])
@@ -188,6 +192,7 @@ class Run(Folder):
         drawn = subprocess.run([sys.executable, ROOT / "samples/plots.py", out], capture_output=True, text=True)
         self.assertEqual(drawn.returncode, 0, drawn.stderr)
         self.assertTrue((out / "frames.png").exists() and (out / "contours.png").exists())
+        self.assertEqual((out / "motion.gif").read_bytes()[:6], b"GIF89a")
 
     def test_interrupt_cancels_and_leaves_what_was_done(self):
         scene = json.loads((SCENES / "column.json").read_text())

@@ -425,6 +425,30 @@ TEST_CASE(
     CHECK(talus_engine_view(without.get(), "relative_humidity", &field) == TALUS_UNKNOWN_NAME);
 }
 
+TEST_CASE("C API: a host that wants to see the ground move stops where it starts and where it rests") {
+    talus_options options = TALUS_OPTIONS_INIT;
+    options.stop_at_motion = 1;
+    const host::Engine engine = host::engine(failing_text, &options);
+    talus_step_report report = TALUS_STEP_REPORT_INIT;
+    talus_status status = TALUS_OK;
+    while (status == TALUS_OK && report.time < 12000) status = talus_engine_step(engine.get(), 600, &report);
+    CHECK(status == TALUS_ENDED_EARLY);
+    CHECK(report.regime == TALUS_DYNAMIC);
+    CHECK(report.kinetic_energy == 0);
+    CHECK(report.time == talus_engine_time(engine.get()));
+    talus_event event = TALUS_EVENT_INIT;
+    REQUIRE(talus_engine_event(engine.get(), 1, &event) == TALUS_OK);
+    CHECK(event.kind == TALUS_MOTION_STARTED);
+    CHECK(event.time == report.time);
+
+    REQUIRE(talus_engine_step(engine.get(), 0.5, &report) == TALUS_OK);
+    CHECK(report.kinetic_energy > 0);
+    CHECK(report.time == event.time + 0.5);
+    CHECK(talus_engine_step(engine.get(), 600, &report) == TALUS_ENDED_EARLY);
+    CHECK(report.regime == TALUS_AT_REST);
+    CHECK(report.time < event.time + 600);
+}
+
 TEST_CASE("C API: from the storm through failure and motion to rest, with every drop of water") {
     Impatient impatient;
     talus_options options = TALUS_OPTIONS_INIT;

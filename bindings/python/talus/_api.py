@@ -9,6 +9,7 @@ OK = 0
 CANCELLED = 1
 OUT_OF_RAIN = 2
 OUTSIDE = 3
+ENDED_EARLY = 4
 INVALID_HANDLE = -1
 INVALID_ARGUMENT = -2
 INVALID_SCENE = -3
@@ -56,7 +57,7 @@ class talus_options(Structure):
         ("progress", talus_progress_callback),
         ("progress_user", c_void_p),
         ("threads", c_int32),
-        ("reserved", c_int32),
+        ("stop_at_motion", c_int32),
     ]
 
 

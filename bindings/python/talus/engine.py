@@ -15,7 +15,7 @@ _RAIN_POLICIES = {"reject": _api.RAIN_REJECT, "hold": _api.RAIN_HOLD, "zero": _a
 _EVENTS = ("SATURATED", "PONDING_STARTED", "PONDING_ENDED", "SEEPAGE_STARTED", "LOSS_OF_EQUILIBRIUM", "RAIN_ENDED",
            "MOTION_STARTED", "CAME_TO_REST")
 _REGIMES = ("QUASI_STATIC", "EQUILIBRIUM_LOST", "DYNAMIC", "AT_REST")
-_STEPS = ("OK", "CANCELLED", "OUT_OF_RAIN")
+_STEPS = ("OK", "CANCELLED", "OUT_OF_RAIN", "ENDED_EARLY")
 
 
 class _Handle:
@@ -79,15 +79,18 @@ class Engine:
     log          called with (level, text)
     progress     called within steps with the fraction done; a true result cancels
     threads      of a dynamic ground; results do not depend on it
+    stop_at_motion  whether a step ends where ground of the regime auto starts to move or comes to rest
 
     Used by one thread at a time; cancel() and time by any. Calls release the GIL.
     """
 
-    def __init__(self, scene, tolerance=None, rain_policy="reject", log=None, progress=None, threads=1):
+    def __init__(self, scene, tolerance=None, rain_policy="reject", log=None, progress=None, threads=1,
+                 stop_at_motion=False):
         callbacks = _Callbacks(log, progress)
         options = begun(_api.talus_options)
         options.tolerance = tolerance or 0.0
         options.threads = threads
+        options.stop_at_motion = stop_at_motion
         options.rain_policy = _RAIN_POLICIES[rain_policy]
         options.log, options.progress = callbacks.log, callbacks.progress
         pointer = c_void_p()
@@ -157,7 +160,7 @@ class Engine:
     def step(self, dt):
         """Carries the run dt seconds on and returns the step's report, a dict with the members of talus_step_report.
 
-        report["status"] is "ok" or "out_of_rain". Raises Cancelled when cancelled, NotConverged when the solver stopped:
+        report["status"] is "ok", "out_of_rain" or "ended_early" (see stop_at_motion). Raises Cancelled when cancelled, NotConverged when the solver stopped:
         the engine is then as it was before the step. Raises ViewHeld while arrays of the engine's memory are held.
         """
         return self._advance(library.talus_engine_step, dt)

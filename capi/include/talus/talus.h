@@ -63,6 +63,7 @@ typedef int32_t talus_status;
 #define TALUS_CANCELLED 1         /* the host asked to stop; the step was undone */
 #define TALUS_OUT_OF_RAIN 2       /* the step was done, and went past the end of a rain series: the last rate was held */
 #define TALUS_OUTSIDE 3           /* some places lie outside the ground; their values are NaN */
+#define TALUS_ENDED_EARLY 4       /* the step was done up to the report's time, see talus_options.stop_at_motion */
 #define TALUS_INVALID_HANDLE -1   /* NULL, destroyed or foreign */
 #define TALUS_INVALID_ARGUMENT -2
 #define TALUS_INVALID_SCENE -3    /* the message lists every problem of the scene, a line each */
@@ -121,7 +122,7 @@ typedef struct talus_options {
     talus_progress_callback progress;  /* 0: none */
     void *progress_user;
     int32_t threads;                   /* of a dynamic ground; 0: one. Results do not depend on it */
-    int32_t reserved;
+    int32_t stop_at_motion;            /* not 0: a step ends where ground of the regime auto starts to move or comes to rest */
 } talus_options;
 #define TALUS_OPTIONS_INIT { sizeof(talus_options), 0, 0.0, 0, 0, 0, 0, 0, 0 }
 
@@ -278,6 +279,7 @@ TALUS_API talus_status talus_engine_push_motion_value(talus_engine *engine, int3
                                                       int64_t count, const double *time, const double *value);
 
 /* Step. dt s of physical time, or to exactly that time; the engine sub-steps within. report may be NULL.
+   TALUS_ENDED_EARLY: done, but not as far, where the options ask for it.
    TALUS_CANCELLED and errors: nothing changed, the next step works. */
 TALUS_API talus_status talus_engine_step(talus_engine *engine, double dt, talus_step_report *report);
 TALUS_API talus_status talus_engine_advance_to(talus_engine *engine, double time, talus_step_report *report);
