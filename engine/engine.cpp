@@ -64,6 +64,7 @@ EventKind event_kind(HappeningKind kind) {
         case HappeningKind::loss_of_equilibrium: return EventKind::loss_of_equilibrium;
         case HappeningKind::motion_started: return EventKind::motion_started;
         case HappeningKind::came_to_rest: return EventKind::came_to_rest;
+        case HappeningKind::settled: return EventKind::settled;
         case HappeningKind::rain_ended: return EventKind::rain_ended;
     }
     return EventKind::rain_ended;
@@ -83,6 +84,11 @@ std::string event_message(const Happening& happening) {
         case HappeningKind::came_to_rest:
             return "the ground rests" + when + ", its front at x = " + value_text(happening.place[0]) + " m; " +
                    value_text(happening.value) + " m3 per metre of thickness moved by more than a cell";
+        case HappeningKind::settled:
+            return std::string(happening.value > 0
+                                   ? "the ground that rests is in equilibrium"
+                                   : "the ground rests, but no equilibrium was found: its skeleton stands") +
+                   when + "; water moves in it again";
         case HappeningKind::rain_ended: return "the rain series ended" + when + "; its last rate is held";
     }
     return {};
@@ -107,11 +113,12 @@ bool lies_in_ground(const ProbeTrack& probe) { return probe.cell_place.cell >= 0
 Engine::State::State(std::shared_ptr<const Scene> scene_in, Options options_in)
     : scene(validated(std::move(scene_in))),
       options(std::move(options_in)),
-      simulation(*scene, options.tolerance > 0 ? options.tolerance : scene->numerics.tolerance, options.threads,
-                 options.stop_at_motion),
-      locator(simulation.reference_mesh()) {
-    check_boundaries_touch(simulation, *scene);
-    if (simulation.dynamic() != nullptr) number_point_soils();
+      simulation(std::make_unique<Simulation>(*scene,
+                                              options.tolerance > 0 ? options.tolerance : scene->numerics.tolerance,
+                                              options.threads, options.stop_at_motion)),
+      locator(simulation->reference_mesh()) {
+    check_boundaries_touch(*simulation, *scene);
+    if (simulation->dynamic() != nullptr) number_point_soils();
     quantities = probe_quantities();
     for (size_t k = 0; k < scene->probes.size(); ++k) {
         const auto [x, y] = scene->probes[k].place;
@@ -121,9 +128,9 @@ Engine::State::State(std::shared_ptr<const Scene> scene_in, Options options_in)
                                                    value_text(y) + ") m: must lie in the ground");
     }
     record_probes();
-    if (simulation.dynamic() != nullptr) report_motion();
+    if (simulation->dynamic() != nullptr) report_motion();
     report_water(report.water);
-    report.least_factor_of_safety = simulation.least_factor_of_safety();
+    report.least_factor_of_safety = simulation->least_factor_of_safety();
     description = describe();
 }
 
@@ -154,7 +161,7 @@ void Engine::push_rain(int32_t zone, std::span<const double> time, std::span<con
                                                   " m/s must be between 0 and " + value_text(largest_rain) +
                                                   (rate[k] > 0 ? " (mm/h given as m/s? 1 mm/h is 2.78e-7 m/s)" : ""));
     }
-    state_->simulation.forcing.push_rain(index, time, rate);
+    state_->simulation->forcing.push_rain(index, time, rate);
 }
 
 void Engine::set_rain(int32_t zone, double rate) {
@@ -182,7 +189,7 @@ void Engine::push_flow_value(int32_t boundary, std::span<const double> time, std
         throw Error(Status::invalid_argument,
                     what + ": it has none; only pressure, hydrostatic and flux conditions take values in time");
     check_series(what, time, value, this->time());
-    state_->simulation.forcing.push_flow_value(index, time, value);
+    state_->simulation->forcing.push_flow_value(index, time, value);
 }
 
 void Engine::push_motion_value(int32_t boundary, int32_t component, std::span<const double> time,
@@ -194,12 +201,12 @@ void Engine::push_motion_value(int32_t boundary, int32_t component, std::span<co
         throw Error(Status::invalid_argument,
                     what + ": component is " + std::to_string(component) + ": must be 0 (x) or 1 (y)");
     const auto axis = static_cast<size_t>(component);
-    if (!state_->scene->physics.deforming || !state_->simulation.forcing.has_motion_value(index, axis))
+    if (!state_->scene->physics.deforming || !state_->simulation->forcing.has_motion_value(index, axis))
         throw Error(
             Status::invalid_argument,
             what + ": it has none in this direction; only displacements and tractions of the scene change in time");
     check_series(what, time, value, this->time());
-    state_->simulation.forcing.push_motion_value(index, axis, time, value);
+    state_->simulation->forcing.push_motion_value(index, axis, time, value);
 }
 
 // --- step ------------------------------------------------------------------------------------------------------------
@@ -219,38 +226,44 @@ Status Engine::advance_to(double until, StepReport& report) {
                                                   " s: must go forward, by less than " + value_text(longest_step) +
                                                   " s");
     const auto start = std::chrono::steady_clock::now();
-    const GroundState before = state.simulation.save();
-    const FlowStatistics flow_before = state.simulation.flow_statistics();
-    state.simulation.happenings.clear();
-    state.simulation.counts = {};
+    const GroundState before = state.simulation->save();
+    const FlowStatistics flow_before = state.simulation->flow_statistics();
+    state.simulation->happenings.clear();
+    state.simulation->counts = {};
     const auto cancelled = [&](double fraction) {
         if (state.options.progress && state.options.progress(std::min(fraction, 1.0))) return true;
         return state.cancel_asked.exchange(false);
     };
+    Replaced replaced;
+    const auto undo = [&] {
+        if (replaced.first) state.simulation = std::move(replaced.first);
+        state.simulation->restore(before);
+    };
     bool finished = false;
     try {
-        finished = !state.cancel_asked.exchange(false) && state.simulation.advance(until, cancelled);
+        finished = !state.cancel_asked.exchange(false) && state.advance(until, cancelled, replaced);
     } catch (...) {
-        state.simulation.restore(before);
+        undo();
         throw;
     }
     if (!finished) {
-        state.simulation.restore(before);
+        undo();
         return Status::cancelled;
     }
 
-    const double reached = state.simulation.state().time;
-    const bool out_of_rain = reached > state.simulation.forcing.rain_end();
-    if (out_of_rain) state.simulation.note_rain_end();
+    if (replaced.first) state.follow_mesh();
+    const double reached = state.simulation->state().time;
+    const bool out_of_rain = reached > state.simulation->forcing.rain_end();
+    if (out_of_rain) state.simulation->note_rain_end();
     state.time = reached;
     ++state.epoch;
     state.derived.clear();
     state.nearest.reset();
-    const StepCounts& counts = state.simulation.counts;
-    const FlowStatistics flow = state.simulation.flow_statistics();
+    const StepCounts& counts = state.simulation->counts;
+    const FlowStatistics flow = state.simulation->flow_statistics();
     StepReport& last = state.report;
     last.time = reached;
-    last.regime = state.simulation.state().equilibrium_lost ? Regime::equilibrium_lost : Regime::quasi_static;
+    last.regime = state.simulation->state().equilibrium_lost ? Regime::equilibrium_lost : Regime::quasi_static;
     last.flow_substeps = flow.substeps - flow_before.substeps;
     last.flow_failures = flow.failures - flow_before.failures;
     last.flow_iterations = flow.iterations - flow_before.iterations;
@@ -259,12 +272,13 @@ Status Engine::advance_to(double until, StepReport& report) {
     last.motion_iterations = counts.motion_iterations;
     state.report_water(last.water);
     last.largest_displacement =
-        largest_length(state.simulation.state().displacement, state.simulation.mesh().dimension);
-    last.largest_velocity = largest_length(state.simulation.state().velocity, state.simulation.mesh().dimension);
-    last.least_factor_of_safety = state.simulation.least_factor_of_safety();
+        largest_length(state.simulation->state().displacement, state.simulation->mesh().dimension);
+    last.largest_velocity = largest_length(state.simulation->state().velocity, state.simulation->mesh().dimension);
+    last.least_factor_of_safety = state.simulation->least_factor_of_safety();
     last.seconds_flow = counts.seconds_flow;
     last.seconds_motion = counts.seconds_motion;
-    if (state.simulation.dynamic() != nullptr) {
+    last.motion = replaced.motion;
+    if (state.simulation->dynamic() != nullptr) {
         if (state.point_soil.empty()) state.follow_points();
         state.report_motion();
     }
@@ -276,22 +290,42 @@ Status Engine::advance_to(double until, StepReport& report) {
     return out_of_rain ? Status::out_of_rain : Status::ok;
 }
 
+// Ground that came to rest goes on as a simulation of its own, in equilibrium, where it can.
+bool Engine::State::advance(double until, const Cancelled& cancelled, Replaced& replaced) {
+    const double from = simulation->state().time;
+    while (true) {
+        if (simulation->may_settle()) {
+            if (std::unique_ptr<Simulation> settled = simulation->settle()) {
+                std::swap(simulation, settled);
+                replaced.motion = settled->dynamic()->report();
+                if (!replaced.first) replaced.first = std::move(settled);
+            }
+        }
+        const double start = simulation->state().time;
+        const auto watched = [&](double fraction) {
+            return cancelled((start + fraction * (until - start) - from) / (until - from));
+        };
+        if (!simulation->advance(until, watched)) return false;
+        if (simulation->state().time >= until || options.stop_at_motion) return true;
+    }
+}
+
 void Engine::State::report_water(WaterBalance& water) const {
     if (!scene->physics.water) return;
-    const FlowTotals& totals = simulation.state().flow.totals;
+    const FlowTotals& totals = simulation->state().flow.totals;
     water.rain = totals[rain_total];
     water.run_off = totals[run_off_total];
     water.infiltrated = water.rain - water.run_off;
     water.seepage = totals[seepage_total];
     water.inflow = totals[inflow_total];
     water.drained = totals[drained_total];
-    water.initial = simulation.initial_water();
-    water.stored = simulation.water_now();
+    water.initial = simulation->initial_water();
+    water.stored = simulation->water_now();
     water.residual = water.stored - water.initial - (water.infiltrated - water.seepage + water.inflow - water.drained);
 }
 
 void Engine::State::tell_happenings() {
-    for (const Happening& happening : simulation.happenings) {
+    for (const Happening& happening : simulation->happenings) {
         events.push_back(
             {event_kind(happening.kind), happening.time, happening.place, happening.value, event_message(happening)});
         if (options.log) options.log(2, events.back().message);
@@ -315,7 +349,7 @@ bool Engine::sample(std::string_view field, std::span<const double> places, std:
     if (view.location == Location::mesh || view.type != DataType::float64)
         throw Error(Status::invalid_argument,
                     "field '" + std::string(field) + "' cannot be sampled: it is not a field over the ground");
-    const auto dimension = static_cast<size_t>(state_->simulation.mesh().dimension);
+    const auto dimension = static_cast<size_t>(state_->simulation->mesh().dimension);
     const auto components = static_cast<size_t>(view.components);
     bool all_inside = true;
     for (size_t i = 0; i < places.size() / dimension; ++i) {
@@ -370,7 +404,7 @@ uint64_t Engine::hash() const {
             for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((bits >> (8 * byte)) & 0xff)) * 1099511628211u;
         }
     };
-    const GroundState& ground = state_->simulation.state();
+    const GroundState& ground = state_->simulation->state();
     mix({ground.time, ground.exchange_step, ground.flow.substep});
     for (const auto* field :
          {&ground.node_position, &ground.displacement, &ground.velocity, &ground.flow.pressure, &ground.flow.stored,
@@ -379,8 +413,8 @@ uint64_t Engine::hash() const {
           &ground.points.strain, &ground.points.plastic_strain, &ground.points.mobilised_strength})
         mix(*field);
     mix({ground.flow.totals.begin(), ground.flow.totals.end()});
-    if (state_->simulation.dynamic() == nullptr) return hash;
-    const FreePoints& points = state_->simulation.dynamic()->points();
+    if (state_->simulation->dynamic() == nullptr) return hash;
+    const FreePoints& points = state_->simulation->dynamic()->points();
     for (const auto& field : points.field) mix(field);
     mix({points.number.begin(), points.number.end()});
     mix({points.quiet.begin(), points.quiet.end()});

@@ -35,7 +35,7 @@ enum class Regime : int32_t {
     quasi_static = 0,
     equilibrium_lost = 1,  ///< failure was found: the skeleton stands as it was, the flow goes on
     dynamic = 2,           ///< the ground moves by its momentum
-    at_rest = 3,           ///< it failed, moved and rests: it lies as it came to lie, and no water moves
+    at_rest = 3,  ///< it failed, moved and rests: it lies as it came to lie, and no water moves until it settles
 };
 
 struct StepReport {
@@ -66,6 +66,7 @@ enum class EventKind : int32_t {
     rain_ended = 6,           ///< the step went past the end of the rain series
     motion_started = 7,       ///< the ground that failed moves by its momentum
     came_to_rest = 8,         ///< the ground that moved rests
+    settled = 9,              ///< it is in equilibrium, on a mesh of its own
 };
 
 struct Event {

@@ -76,8 +76,8 @@ int64_t bytes_held(const Simulation& simulation) {
 
 std::string Engine::State::describe() const {
     const Scene& s = *scene;
-    const Mesh& mesh = simulation.mesh();
-    const DynamicGround* dynamic = simulation.dynamic();
+    const Mesh& mesh = simulation->mesh();
+    const DynamicGround* dynamic = simulation->dynamic();
     ordered_json json;
     json["name"] = s.name;
     json["title"] = s.title;
@@ -92,14 +92,14 @@ std::string Engine::State::describe() const {
     json["nodes"] = dynamic == nullptr ? mesh.node_count() : 0;
     json["cells"] = dynamic == nullptr ? mesh.cell_count() : 0;
     json["points"] =
-        dynamic == nullptr ? static_cast<size_t>(simulation.state().points.count) : dynamic->points().count;
+        dynamic == nullptr ? static_cast<size_t>(simulation->state().points.count) : dynamic->points().count;
     if (dynamic != nullptr) {
         json["cell_size"] = dynamic->cell_size();
         json["bytes_a_point"] = dynamic->points().bytes_a_point();
     }
-    json["unknowns"] = {{"flow", simulation.flow() != nullptr ? mesh.node_count() : 0},
-                        {"motion", simulation.motion_unknowns()}};
-    json["bytes"] = bytes_held(simulation);
+    json["unknowns"] = {{"flow", simulation->flow() != nullptr ? mesh.node_count() : 0},
+                        {"motion", simulation->motion_unknowns()}};
+    json["bytes"] = bytes_held(*simulation);
     json["schedule"] = {{"duration", number_or_null(s.schedule.duration)},
                         {"step", number_or_null(s.schedule.step)},
                         {"motion_step", number_or_null(s.schedule.motion_step)},

@@ -147,7 +147,7 @@ std::vector<double> derive(std::string_view name, const DynamicGround& ground) {
 }  // namespace
 
 void Engine::State::number_point_soils() {
-    const FreePoints& points = simulation.dynamic()->points();
+    const FreePoints& points = simulation->dynamic()->points();
     point_soil.resize(points.count);
     for (size_t p = 0; p < points.count; ++p) point_soil[static_cast<size_t>(points.number[p])] = points.soil[p];
 }
@@ -155,7 +155,7 @@ void Engine::State::number_point_soils() {
 void Engine::State::follow_points() {
     number_point_soils();
     // By where they lay at the start: within the step they may have moved already.
-    const NearestPlace start(simulation.dynamic()->start_position(), simulation.dynamic()->cell_size());
+    const NearestPlace start(simulation->dynamic()->start_position(), simulation->dynamic()->cell_size());
     for (ProbeTrack& probe : probes) probe.point = start.find(probe.place[0], probe.place[1]);
     description = describe();
 }
@@ -168,7 +168,7 @@ bool Engine::State::has_point_field(std::string_view name) const {
 std::vector<std::string> Engine::State::point_field_names() const {
     std::vector<std::string> names;
     for (const PointEntry& entry : entries)
-        if (has(entry, *simulation.dynamic())) names.emplace_back(entry.name);
+        if (has(entry, *simulation->dynamic())) names.emplace_back(entry.name);
     return names;
 }
 
@@ -177,7 +177,7 @@ std::vector<std::string> Engine::State::point_quantities() const {
     constexpr std::array tensor{".xx", ".yy", ".zz", ".xy"};
     std::vector<std::string> names;
     for (const PointEntry& entry : entries) {
-        if (!entry.probed || !has(entry, *simulation.dynamic())) continue;
+        if (!entry.probed || !has(entry, *simulation->dynamic())) continue;
         const bool is_pressure = std::string_view(entry.name) == "point_pressure";  // probes of a mesh have the nodes'
         if (entry.components == 1) names.emplace_back(is_pressure ? "pressure" : entry.name);
         for (size_t k = 0; k < static_cast<size_t>(entry.components) && entry.components > 1; ++k)
@@ -187,21 +187,21 @@ std::vector<std::string> Engine::State::point_quantities() const {
 }
 
 FieldView Engine::State::view_points(std::string_view field) const {
-    const PointEntry& entry = find_entry(field, *simulation.dynamic());
+    const PointEntry& entry = find_entry(field, *simulation->dynamic());
     FieldView view;
     view.name = entry.name;
     view.units = entry.units;
     view.standard_name = entry.standard_name;
     view.location = Location::point;
     view.components = entry.components;
-    view.count = static_cast<int64_t>(simulation.dynamic()->points().count);
+    view.count = static_cast<int64_t>(simulation->dynamic()->points().count);
     if (field == "point_soil") {
         view.type = DataType::int32;
         view.data = point_soil.data();
         return view;
     }
     auto found = derived.find(field);
-    if (found == derived.end()) found = derived.emplace(field, derive(field, *simulation.dynamic())).first;
+    if (found == derived.end()) found = derived.emplace(field, derive(field, *simulation->dynamic())).first;
     view.data = found->second.data();
     return view;
 }
@@ -211,7 +211,7 @@ int32_t Engine::State::nearest_point(double x, double y) const {
         const FieldView position = view_points("point_position");
         nearest = std::make_unique<NearestPlace>(
             std::span(static_cast<const double*>(position.data), static_cast<size_t>(2 * position.count)),
-            simulation.dynamic()->cell_size());
+            simulation->dynamic()->cell_size());
     }
     return nearest->find(x, y);
 }
@@ -222,8 +222,8 @@ void Engine::State::copy_row(const FieldView& field, int32_t point, std::span<do
 }
 
 void Engine::State::report_motion() {
-    const MotionReport motion = simulation.dynamic()->report();
-    report.regime = simulation.state().rests ? Regime::at_rest : Regime::dynamic;
+    const MotionReport motion = simulation->dynamic()->report();
+    report.regime = simulation->state().rests ? Regime::at_rest : Regime::dynamic;
     report.motion = motion;
     report.largest_displacement = motion.largest_displacement;
     report.largest_velocity = motion.largest_velocity;

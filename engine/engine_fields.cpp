@@ -127,7 +127,7 @@ std::string component_name(const FieldEntry& entry, int64_t components, size_t k
 }  // namespace
 
 std::vector<std::string> Engine::State::field_names() const {
-    if (simulation.dynamic() != nullptr) return point_field_names();
+    if (simulation->dynamic() != nullptr) return point_field_names();
     std::vector<std::string> names;
     for (const FieldEntry& entry : fields)
         if (has(entry, *scene)) names.emplace_back(entry.name);
@@ -135,9 +135,9 @@ std::vector<std::string> Engine::State::field_names() const {
 }
 
 FieldView Engine::State::view(std::string_view field) const {
-    if (simulation.dynamic() != nullptr) return view_points(field);
+    if (simulation->dynamic() != nullptr) return view_points(field);
     const FieldEntry& entry = find_entry(field, *scene);
-    const Mesh& mesh = simulation.mesh();
+    const Mesh& mesh = simulation->mesh();
     FieldView view;
     view.name = entry.name;
     view.units = entry.units;
@@ -155,10 +155,10 @@ FieldView Engine::State::view(std::string_view field) const {
     }
     const std::vector<double>* values = nullptr;
     if (entry.source == Source::held) {
-        values = &held_values(field, simulation.state());
+        values = &held_values(field, simulation->state());
     } else {
         auto found = derived.find(field);
-        if (found == derived.end()) found = derived.emplace(field, derive(field, simulation, *scene)).first;
+        if (found == derived.end()) found = derived.emplace(field, derive(field, *simulation, *scene)).first;
         values = &found->second;
     }
     view.data = values->data();
@@ -167,7 +167,7 @@ FieldView Engine::State::view(std::string_view field) const {
 }
 
 bool Engine::State::sample(const FieldView& field, double x, double y, std::span<double> values) const {
-    if (simulation.dynamic() != nullptr) {
+    if (simulation->dynamic() != nullptr) {
         const int32_t point = nearest_point(x, y);
         if (point >= 0) copy_row(field, point, values);
         return point >= 0;
@@ -178,7 +178,7 @@ bool Engine::State::sample(const FieldView& field, double x, double y, std::span
 }
 
 void Engine::State::sample_cell(const FieldView& field, const CellPlace& place, std::span<double> values) const {
-    const Mesh& mesh = simulation.mesh();
+    const Mesh& mesh = simulation->mesh();
     const auto cell = static_cast<size_t>(place.cell);
     const auto* rows = static_cast<const double*>(field.data);
     const int32_t first = mesh.cell_start[cell];
@@ -202,32 +202,32 @@ void Engine::State::sample_cell(const FieldView& field, const CellPlace& place, 
         }
         const std::string_view name = field.name;
         if (name == "saturation") {  // linear in the cell, like the pressure
-            const HydraulicTable& table = simulation.flow()->table(static_cast<size_t>(mesh.cell_soil[cell]));
+            const HydraulicTable& table = simulation->flow()->table(static_cast<size_t>(mesh.cell_soil[cell]));
             values[0] = 0;
             for (size_t a = 0; a < Shape::nodes; ++a) {
                 const auto node = static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(first) + a]);
-                values[0] += share[a] * table.at(simulation.state().flow.pressure[node]).saturation;
+                values[0] += share[a] * table.at(simulation->state().flow.pressure[node]).saturation;
             }
             return;
         }
         if (name == "suction" || name == "point_pressure") {
-            const double pressure = from_nodes(simulation.state().flow.pressure.data(), 1, 0);
+            const double pressure = from_nodes(simulation->state().flow.pressure.data(), 1, 0);
             values[0] = name == "suction" ? std::max(0.0, -pressure) : pressure;
             return;
         }
-        const auto row = static_cast<size_t>(simulation.state().points.cell_start[cell]);
+        const auto row = static_cast<size_t>(simulation->state().points.cell_start[cell]);
         sample_points<Shape>(rows + row * components, field.components, at, values);
     });
 }
 
 std::vector<std::string> Engine::State::probe_quantities() const {
-    if (simulation.dynamic() != nullptr) return point_quantities();
+    if (simulation->dynamic() != nullptr) return point_quantities();
     std::vector<std::string> names;
     for (const FieldEntry& entry : fields) {
         const bool is_place = std::string_view(entry.name).find("position") != std::string_view::npos;
         if (!has(entry, *scene) || entry.source == Source::connectivity || is_place) continue;
         if (std::string_view(entry.name).starts_with("point_")) continue;
-        const int64_t components = entry.components == 0 ? simulation.mesh().dimension : entry.components;
+        const int64_t components = entry.components == 0 ? simulation->mesh().dimension : entry.components;
         for (size_t k = 0; k < static_cast<size_t>(components); ++k)
             names.push_back(component_name(entry, components, k));
     }
@@ -236,12 +236,34 @@ std::vector<std::string> Engine::State::probe_quantities() const {
 
 ProbeTrack Engine::State::make_probe(const std::string& name, Place place) const {
     ProbeTrack probe{name, place, {}, -1, std::vector<std::vector<double>>(quantities.size())};
-    if (simulation.dynamic() != nullptr) {
+    if (simulation->dynamic() != nullptr) {
         probe.point = nearest_point(place[0], place[1]);
     } else {
         probe.cell_place = locator.locate(place[0], place[1]);
     }
     return probe;
+}
+
+void Engine::State::follow_mesh() {
+    locator = Locator(simulation->reference_mesh());
+    point_soil.clear();
+    if (simulation->dynamic() != nullptr) return;  // it moves again
+    const Points& points = simulation->state().points;
+    std::vector<double> start(points.position);
+    for (size_t i = 0; i < start.size(); ++i) start[i] -= points.displacement[i];
+    const NearestPlace nearest_start(start, scene->dynamics.cell_size);
+    for (ProbeTrack& probe : probes) {
+        probe.cell_place = {};
+        probe.point = -1;
+        const int32_t nearest_one = nearest_start.find(probe.place[0], probe.place[1]);
+        if (nearest_one < 0) continue;
+        const double* displacement = &points.displacement[2 * static_cast<size_t>(nearest_one)];
+        probe.cell_place = locator.locate(probe.place[0] + displacement[0], probe.place[1] + displacement[1]);
+        if (probe.cell_place.cell >= 0) continue;
+        const double* position = &points.position[2 * static_cast<size_t>(nearest_one)];
+        probe.cell_place = locator.locate(position[0], position[1]);
+    }
+    description = describe();
 }
 
 void Engine::State::record(ProbeTrack& probe) const {
@@ -262,14 +284,16 @@ void Engine::State::record(ProbeTrack& probe) const {
 
 /// The values of a field at a probe; no number where the ground that the probe is in has come to lack the field.
 void Engine::State::record_row(const ProbeTrack& probe, std::string_view name, std::span<double> row) const {
-    if (simulation.dynamic() == nullptr) return sample_cell(view(name), probe.cell_place, row);
+    if (simulation->dynamic() == nullptr && probe.cell_place.cell >= 0)
+        return sample_cell(view(name), probe.cell_place, row);
     const std::string_view at_points = name == "pressure" ? "point_pressure" : name;
-    if (probe.point >= 0 && has_point_field(at_points)) return copy_row(view(at_points), probe.point, row);
+    if (simulation->dynamic() != nullptr && probe.point >= 0 && has_point_field(at_points))
+        return copy_row(view(at_points), probe.point, row);
     std::fill(row.begin(), row.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
 void Engine::State::record_probes() {
-    probe_times.push_back(simulation.state().time);
+    probe_times.push_back(simulation->state().time);
     for (ProbeTrack& probe : probes) record(probe);
 }
 

@@ -23,13 +23,19 @@ struct ProbeTrack {
     std::vector<std::vector<double>> history;  ///< one a quantity, one value a row of Engine::State::probe_times
 };
 
+/// Where ground settled within a step.
+struct Replaced {
+    std::unique_ptr<Simulation> first;  ///< that the step began with; empty: it is the present one
+    MotionReport motion;                ///< of the last motion
+};
+
 struct Engine::State {
     State(std::shared_ptr<const Scene> scene_in, Options options_in);
 
     std::shared_ptr<const Scene> scene;
     Options options;
-    Simulation simulation;
-    Locator locator;  ///< of the ground as it lay at the start
+    std::unique_ptr<Simulation> simulation;
+    Locator locator;  ///< of the ground as it lay at the start, or as it settled
     std::atomic<double> time{0.0};
     std::atomic<bool> cancel_asked{false};
     int64_t epoch = 1;
@@ -45,6 +51,9 @@ struct Engine::State {
     mutable std::unique_ptr<NearestPlace> nearest;  ///< of a dynamic ground's points, of the present epoch
     std::vector<int32_t> point_soil;                ///< of a dynamic ground, by the points' numbers
 
+    /// Carries the simulation to `until`, or to where it stops at a motion; false when cancelled.
+    bool advance(double until, const Cancelled& cancelled, Replaced& replaced);
+
     // engine_fields.cpp
     [[nodiscard]] std::vector<std::string> field_names() const;
     [[nodiscard]] FieldView view(std::string_view field) const;
@@ -57,6 +66,8 @@ struct Engine::State {
     void record_row(const ProbeTrack& probe, std::string_view name, std::span<double> row) const;
     /// A probe without a history yet; it has neither cell nor point where the place lies outside the ground.
     [[nodiscard]] ProbeTrack make_probe(const std::string& name, Place place) const;
+    /// A ground has come to be one of another mesh: probes go on where what lay at their places at the start lies now.
+    void follow_mesh();
 
     // engine_dynamic_fields.cpp
     void number_point_soils();

@@ -205,7 +205,8 @@ void fill_with_water(const Scene& scene, const Mesh& mesh, const Locator& locato
         const auto soil = static_cast<size_t>(points.soil[p]);
         const double saturation =
             tables[soil].at(here).saturation * (1 + std::max(here, 0.0) / scene.water.bulk_modulus);
-        points[water_mass][p] = scene.water.density * scene.soils[soil].porosity * saturation * points[point_volume][p];
+        const double grains = points[solid_mass][p] * (1 - scene.soils[soil].porosity) / scene.soils[soil].dry_density;
+        points[water_mass][p] = scene.water.density * saturation * (points[point_volume][p] - grains);
     }
 }
 
@@ -264,6 +265,17 @@ bool is_finite(const FreePoints& points, PointField name) {
                 "t = " + value_text(time) + " s: " + problem + "; this says nothing about the slope");
 }
 
+/// The plastic strain with which the points have lost their share of strength.
+void soften(const Scene& scene, const Mesh& mesh, const Locator& locator, std::span<const double> lost_strength,
+            SeededPoints& seeded, double cell_size) {
+    for (size_t p = 0; p < seeded.points.count; ++p) {
+        const CellPlace place = locator.locate(seeded.points[position_x][p], seeded.points[position_y][p]);
+        const double lost = value_at(mesh, lost_strength, place, seeded.cell[p]);
+        const double slip = scene.soils[static_cast<size_t>(seeded.points.soil[p])].solid.softening.slip;
+        seeded.points[plastic_shear_strain][p] = lost * slip / (std::sqrt(3.0) * cell_size);
+    }
+}
+
 /// The mass of each soil, which the mesh's deformation did not change.
 void keep_mass(const std::vector<double>& soil_mass, FreePoints& points) {
     std::vector<double> found(soil_mass.size(), 0.0);
@@ -315,6 +327,7 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     const Locator locator(mesh);
     SeededPoints seeded = make_free_points(scene, mesh, mesh_points, locator, walls, cell_size);
     if (!handover.soil_mass.empty()) keep_mass(handover.soil_mass, seeded.points);
+    if (!handover.lost_strength.empty()) soften(scene, mesh, locator, handover.lost_strength, seeded, cell_size);
     if (handover.pressure.empty()) {
         return Motion(std::in_place_type<ExplicitMotion>, cell_size, walls, scene.gravity, explicit_soils(scene),
                       std::move(seeded.points), threads, scene.dynamics.rest_speed);
@@ -444,6 +457,10 @@ double DynamicGround::cell_size() const {
     return std::visit([](const auto& motion) { return motion.grid().cell_size; }, motion_);
 }
 
+const Walls& DynamicGround::walls() const {
+    return std::visit([](const auto& motion) -> const Walls& { return motion.walls(); }, motion_);
+}
+
 double DynamicGround::rain_on(const RainAt& rain) const {
     const Grid& grid = std::visit([](const auto& motion) -> const Grid& { return motion.grid(); }, motion_);
     std::vector<uint8_t> held(static_cast<size_t>(grid.cells[0]), 0);
@@ -507,6 +524,12 @@ double DynamicGround::solutes() const {
 double DynamicGround::porosity(size_t point) const {
     const double grains = grain_density_[static_cast<size_t>(points().soil[point])] * points()[point_volume][point];
     return 1 - points()[solid_mass][point] / grains;
+}
+
+double DynamicGround::lost_strength(size_t point) const {
+    const ExplicitSoil& soil = soils_[static_cast<size_t>(points().soil[point])];
+    if (soil.softening_slip <= 0) return 0;
+    return std::min(std::sqrt(3.0) * cell_size() * points()[plastic_shear_strain][point] / soil.softening_slip, 1.0);
 }
 
 WaterExchange DynamicGround::water_exchange() const {

@@ -31,11 +31,12 @@ struct WaterExchange {
 
 /// What a ground of a mesh hands over to its material points.
 struct Handover {
-    std::span<const double> pressure{};      ///< at the nodes, Pa; empty: dry
-    std::span<const double> displacement{};  ///< of the nodes since the start, m; empty: none
-    std::vector<double> soil_mass{};         ///< of each soil, kg per metre of thickness; empty: as its density says
-    double water = 0;                        ///< m3 per metre of thickness; 0: as the pressures say
-    double time = 0;                         ///< when, s
+    std::span<const double> pressure{};       ///< at the nodes, Pa; empty: dry
+    std::span<const double> displacement{};   ///< of the nodes since the start, m; empty: none
+    std::vector<double> soil_mass{};          ///< of each soil, kg per metre of thickness; empty: as its density says
+    double water = 0;                         ///< m3 per metre of thickness; 0: as the pressures say
+    double time = 0;                          ///< when, s
+    std::span<const double> lost_strength{};  ///< at the nodes, share of what softening takes; empty: none
 };
 
 class DynamicGround {
@@ -61,6 +62,7 @@ public:
 
     [[nodiscard]] const FreePoints& points() const;
     [[nodiscard]] double cell_size() const;
+    [[nodiscard]] const Walls& walls() const;
     [[nodiscard]] bool has_water() const { return !std::holds_alternative<ExplicitMotion>(motion_); }
     [[nodiscard]] bool has_gas() const {
         return std::holds_alternative<ThreePhases>(motion_) || has_exchange();
@@ -80,6 +82,7 @@ public:
     [[nodiscard]] double water() const;
     [[nodiscard]] WaterExchange water_exchange() const;
     [[nodiscard]] double porosity(size_t point) const;
+    [[nodiscard]] double lost_strength(size_t point) const;  ///< share of what softening takes, 0 to 1
     [[nodiscard]] MotionReport report() const;
 
     /// Where each point lay at the start, by its number: x, y, m.

@@ -45,6 +45,7 @@ struct GroundState {
     bool settles_jointly = false;          ///< flow and skeleton, where the skeleton alone found no equilibrium last
     bool equilibrium_lost = false;         ///< the skeleton stands as it was when it failed
     bool rests = false;                    ///< it failed, moved and came to rest
+    bool lies_still = false;               ///< and found no way back to equilibrium
     FlowWatch watch;
     bool rain_is_out = false;
 };

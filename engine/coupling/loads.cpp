@@ -84,6 +84,8 @@ void Simulation::set_loads(const FlowState& flow, double until) {
             effective = effective_of_saturation(retention, saturation);
         }
         point_strength_[p] = shear_strength(soil.solid.strength, suction, effective);
+        if (!point_lost_strength_.empty())
+            point_strength_[p] = softened(point_strength_[p], soil.solid, point_lost_strength_[p]);
     }
     std::fill(node_force_.begin(), node_force_.end(), 0.0);
     for (const GivenTraction& given : given_tractions_) add_traction(given, until);

@@ -69,7 +69,7 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
 
 // From the last state in equilibrium. That stays as it is, so that a step that fails later can go back to it.
 void Simulation::start_motion() {
-    Handover handover{state_.flow.pressure, state_.displacement, {}, 0, state_.time};
+    Handover handover{state_.flow.pressure, state_.displacement, {}, 0, state_.time, lost_strength_};
     handover.soil_mass.assign(scene_.soils.size(), 0.0);
     for (size_t p = 0; p < initial_volume_.size(); ++p) {
         const auto soil = static_cast<size_t>(state_.points.soil[p]);
@@ -80,11 +80,11 @@ void Simulation::start_motion() {
     happenings.push_back({HappeningKind::motion_started, state_.time, outcome_.collapse.place, 0.0});
 }
 
-// A dynamic ground: from one change of the rain to the next. In the regime `auto` it lies still once it rests.
+// A dynamic ground: from one change of the rain to the next, in the regime `auto` until it rests; what finds no way back to equilibrium lies still then.
 bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
     const double from = state_.time;
     while (state_.time < until) {
-        if (state_.rests) {
+        if (state_.lies_still) {
             lie_still(until);
             return true;
         }
@@ -106,13 +106,13 @@ bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
             const MotionReport report = dynamic_->report();
             happenings.push_back(
                 {HappeningKind::came_to_rest, state_.time, {report.front_x, 0.0}, report.sliding_volume});
-            if (stop_at_motion_) return true;
+            return true;
         }
     }
     return true;
 }
 
-// No water moves in ground that rests: all rain runs off.
+// No water moves in ground that lies still: all rain runs off.
 void Simulation::lie_still(double until) {
     while (state_.time < until) {
         const double stop = forcing.next_break(state_.time, until);

@@ -5,6 +5,7 @@
 // Juanes, Comput. Methods Appl. Mech. Eng. 200, 2011). The exchanges' length follows from how well the expectation was met.
 #pragma once
 
+#include "coupling/deposit.hpp"
 #include "coupling/dynamic.hpp"
 #include "coupling/forcing.hpp"
 #include "coupling/ground_state.hpp"
@@ -38,15 +39,17 @@ enum class HappeningKind {
     loss_of_equilibrium,
     motion_started,
     came_to_rest,
+    settled,
     rain_ended
 };
 
 /// Something the host should know, noticed inside a step.
 struct Happening {
     HappeningKind kind;
-    double time;   ///< s
-    Place place;   ///< m
-    double value;  ///< of loss_of_equilibrium: largest displacement of the moving mass while it was watched, m
+    double time;  ///< s
+    Place place;  ///< m
+    double
+        value;  ///< of loss_of_equilibrium: largest displacement of the moving mass while it was watched, m; of settled: 1 in equilibrium, 0 where none was found
 };
 
 class Simulation {
@@ -58,6 +61,11 @@ public:
     /// False when `cancelled(fraction)` said so. Throws Error(not_converged) when a solver stops. In both
     /// cases the caller puts the state back with restore().
     bool advance(double until, const Cancelled& cancelled);
+
+    /// Of ground that came to rest: what goes on from there quasi-statically, on a mesh under the surface as it lies now; its skeleton stands where no equilibrium
+    /// was found. Empty where there is no such mesh: the ground then lies still, and no water moves in it.
+    std::unique_ptr<Simulation> settle();
+    [[nodiscard]] bool may_settle() const { return state_.rests && !state_.lies_still; }
 
     [[nodiscard]] GroundState save() const;
     void restore(const GroundState& state);
@@ -74,7 +82,7 @@ public:
     [[nodiscard]] const Mesh& reference_mesh() const { return reference_mesh_; }
     [[nodiscard]] const FlowSystem* flow() const { return flow_.get(); }
     [[nodiscard]] FlowStatistics flow_statistics() const {
-        return integrator_ ? integrator_->statistics() : FlowStatistics{};
+        return integrator_ ? past_statistics_ + integrator_->statistics() : past_statistics_;
     }
     [[nodiscard]] double water_now() const;  ///< m3, in the pores and ponded, from the pressures
     [[nodiscard]] double initial_water() const { return initial_water_; }
@@ -86,6 +94,7 @@ public:
     [[nodiscard]] const DynamicGround* dynamic() const { return dynamic_.get(); }  ///< nullptr: quasi-static
 
 private:
+    Simulation(const Simulation& moved, Deposit deposit);
     void start_motion();
     bool advance_dynamically(double until, const Cancelled& cancelled);
     void lie_still(double until);
@@ -109,6 +118,12 @@ private:
     void set_initial_stress();
     EquilibriumOutcome find_initial_stress(const Loads& loads);
     void make_dynamic(int32_t threads);
+
+    // the way back (settle.cpp)
+    void take_grains(const Simulation& moved, Deposit& deposit);
+    void take_water(const Simulation& moved, const Deposit& deposit);
+    void hold_water(double water);
+    void take_stress(const Deposit& deposit);
 
     // the exchange (exchange.cpp)
     Exchange exchange(double duration, bool is_short, const Cancelled& cancelled);
@@ -155,6 +170,7 @@ private:
     std::unique_ptr<Equilibrium> equilibrium_;    // empty: rigid, or dynamic
     std::unique_ptr<DynamicGround> dynamic_;      // empty: quasi-static
     double initial_water_ = 0;
+    FlowStatistics past_statistics_;  // of the simulation before it settled
     size_t motion_unknowns_ = 0;
     double agreement_pressure_ = 0;  // Pa: pore volumes agree where the difference moves the pressure by less
     struct GivenDisplacement {
@@ -188,6 +204,8 @@ private:
     std::vector<double> point_pore_stress_, point_density_, node_force_, prescribed_displacement_;
     std::vector<ShearStrength> point_strength_;
     std::vector<double> initial_volume_;       // per point, m3
+    std::vector<double> lost_strength_;        // per node: share of what softening takes; empty: none has moved yet
+    std::vector<double> point_lost_strength_;  // the same per point
     std::vector<double> conductivity_factor_;  // per cell; empty: 1
     EquilibriumOutcome outcome_;
 };

@@ -20,6 +20,10 @@ struct FlowStatistics {
     int64_t substeps = 0;
     int64_t failures = 0;
     int64_t iterations = 0;
+
+    friend FlowStatistics operator+(const FlowStatistics& a, const FlowStatistics& b) {
+        return {a.substeps + b.substeps, a.failures + b.failures, a.iterations + b.iterations};
+    }
 };
 
 /// The flow's state between advances.

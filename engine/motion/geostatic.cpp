@@ -48,15 +48,15 @@ std::vector<double> cell_means(const Points& points, std::span<const double> val
     return means;
 }
 
+}  // namespace
+
 // The whole weight is one load that cannot be put on in parts: stress that the elastic solution gave stiff ground moves far.
-EquilibriumOutcome yield_in_place(Equilibrium& equilibrium, const Loads& loads) {
+EquilibriumOutcome settle_in_place(Equilibrium& equilibrium, const Loads& loads) {
     constexpr int32_t most_creep_steps = 2000;
     const EquilibriumOutcome outcome = equilibrium.solve(loads, Equilibrium::tolerance, most_creep_steps);
     if (outcome.status == EquilibriumStatus::converged) equilibrium.accept_stress();
     return outcome;
 }
-
-}  // namespace
 
 EquilibriumOutcome turn_on_gravity_elastically(Equilibrium& equilibrium, const Loads& loads) {
     const EquilibriumOutcome elastic = equilibrium.solve_elastically(loads);
@@ -67,7 +67,7 @@ EquilibriumOutcome turn_on_gravity_elastically(Equilibrium& equilibrium, const L
 EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads) {
     const EquilibriumOutcome elastic = turn_on_gravity_elastically(equilibrium, loads);
     if (elastic.status != EquilibriumStatus::converged) return elastic;
-    return yield_in_place(equilibrium, loads);
+    return settle_in_place(equilibrium, loads);
 }
 
 void put_k0_stress(const Mesh& mesh, Points& points, const Loads& loads, double gravity, double k0) {
@@ -92,7 +92,7 @@ EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Poi
                                  double gravity, double k0) {
     put_k0_stress(mesh, points, loads, gravity, k0);
     equilibrium.accept_stress();
-    return yield_in_place(equilibrium, loads);
+    return settle_in_place(equilibrium, loads);
 }
 
 }  // namespace talus

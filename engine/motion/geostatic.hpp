@@ -12,6 +12,10 @@ EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads)
 /// The same without the soils' strength: the stress may be more than they bear.
 EquilibriumOutcome turn_on_gravity_elastically(Equilibrium& equilibrium, const Loads& loads);
 
+/// Equilibrium with the soils' strength from the stress that there is, all loads at once. The stress is accepted where the outcome is converged: the
+/// ground takes it where it lies.
+EquilibriumOutcome settle_in_place(Equilibrium& equilibrium, const Loads& loads);
+
 /// Vertical stress from the weight above each point, horizontal skeleton stress `k0` times the vertical one; in no equilibrium. `gravity` in
 /// m/s2.
 void put_k0_stress(const Mesh& mesh, Points& points, const Loads& loads, double gravity, double k0);

@@ -87,7 +87,7 @@ typedef int32_t talus_status;
 #define TALUS_QUASI_STATIC 0      /* regime: the ground is in equilibrium; */
 #define TALUS_EQUILIBRIUM_LOST 1  /* failure was found: the skeleton stands as it was, the flow goes on; */
 #define TALUS_DYNAMIC 2           /* or the ground moves by its momentum, as the scene's physics.regime says */
-#define TALUS_AT_REST 3           /* it failed, moved and rests: it lies as it came to lie, and no water moves */
+#define TALUS_AT_REST 3           /* it failed, moved and rests: no water moves until it settles (TALUS_SETTLED) */
 
 #define TALUS_SATURATED 1         /* kind of an event: the last pore of the ground filled */
 #define TALUS_PONDING_STARTED 2   /* water stands on the surface, or runs off */
@@ -97,6 +97,7 @@ typedef int32_t talus_status;
 #define TALUS_RAIN_ENDED 6        /* the step went past the end of the rain series */
 #define TALUS_MOTION_STARTED 7    /* the ground that failed moves by its momentum */
 #define TALUS_CAME_TO_REST 8      /* the ground that moved rests */
+#define TALUS_SETTLED 9           /* it is in equilibrium, on a mesh under its surface as it lies now */
 
 #define TALUS_RAIN_REJECT 0       /* what to do with a NaN or negative rate: an error, */
 #define TALUS_RAIN_HOLD 1         /* the last good rate before it, counted in the step report, */

@@ -37,4 +37,14 @@ ShearStrength shear_strength(const Strength& strength, double suction, double ef
     return saturated;
 }
 
+ShearStrength softened(const ShearStrength& strength, const Solid& solid, double lost) {
+    if (!(solid.softening.slip > 0)) return strength;
+    constexpr double degree = std::numbers::pi / 180;
+    const double peak = std::sin(solid.strength.friction_angle * degree);
+    const double residual = std::sin(solid.softening.residual_friction_angle * degree);
+    const double sine = std::sin(strength.friction_angle * degree) + lost * (residual - peak);
+    return {strength.cohesion + lost * (solid.softening.residual_cohesion - solid.strength.cohesion),
+            std::asin(sine) / degree};
+}
+
 }  // namespace talus

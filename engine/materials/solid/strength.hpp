@@ -15,4 +15,7 @@ struct ShearStrength {
 /// The exponential form's friction angle, linear in suction, stays below 60 degrees, beyond any soil it was measured on.
 ShearStrength shear_strength(const Strength& strength, double suction, double effective_saturation);
 
+/// The strength of ground that has lost this share (0 to 1) of what the solid's softening takes.
+ShearStrength softened(const ShearStrength& strength, const Solid& solid, double lost);
+
 }  // namespace talus

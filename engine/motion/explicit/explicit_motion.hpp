@@ -48,6 +48,7 @@ public:
     [[nodiscard]] const FreePoints& points() const { return points_; }
     [[nodiscard]] FreePoints& points() { return points_; }
     [[nodiscard]] const Grid& grid() const { return nodes_.grid; }
+    [[nodiscard]] const Walls& walls() const { return nodes_.walls; }
 
 private:
     void arrange_points();
