@@ -286,12 +286,14 @@ void keep_mass(const std::vector<double>& soil_mass, FreePoints& points) {
     }
 }
 
-/// What the points' water is short of the mesh's, by their place between its nodes, goes to those that are neither full nor empty.
+/// What the points' water is short of the mesh's, by their place between its nodes, goes to those that are neither full nor empty; what they have no room for is
+/// pressed into all.
 void keep_water(const Scene& scene, double water, FreePoints& points) {
-    double missing = scene.water.density * water, room = 0;
+    double missing = scene.water.density * water, room = 0, held = 0;
     std::vector<double> share(points.count);
     for (size_t p = 0; p < points.count; ++p) {
         missing -= points[water_mass][p];
+        held += points[water_mass][p];
         const auto soil = static_cast<size_t>(points.soil[p]);
         const Retention& retention = scene.soils[soil].hydraulics.retention;
         const double pores = scene.water.density * scene.soils[soil].porosity * points[point_volume][p];
@@ -300,7 +302,9 @@ void keep_water(const Scene& scene, double water, FreePoints& points) {
                    std::max(saturation - retention.residual_saturation, 0.0);
         room += share[p];
     }
-    for (size_t p = 0; p < points.count && room > 0; ++p) points[water_mass][p] += missing * share[p] / room;
+    const double moved = std::clamp(missing, -0.5 * room, 0.5 * room), pressed = missing - moved;
+    for (size_t p = 0; p < points.count; ++p)
+        points[water_mass][p] += (room > 0 ? moved * share[p] / room : 0.0) + pressed * points[water_mass][p] / held;
 }
 
 /// Where the points lay before the mesh's nodes moved.

@@ -88,7 +88,7 @@ void Simulation::take_water(const Simulation& moved, const Deposit& deposit) {
     state_.watch.is_saturated = is_full(state_.flow.pressure);
 }
 
-// What the nodes' pressures hold less than there is goes to those that are neither full nor empty.
+// What the nodes' pressures hold less than there is goes to those that are neither full nor empty; what they have no room for is pressed into those that are full.
 void Simulation::hold_water(double water) {
     constexpr double rounding = 1e-14;
     constexpr int most_rounds = 50;
@@ -96,14 +96,18 @@ void Simulation::hold_water(double water) {
     for (int round = 0; round < most_rounds; ++round) {
         hold_skeleton();
         flow_->evaluate(0.0, pressure);
-        double missing = water, room = 0;
+        double missing = water, room = 0, full = 0;
         for (const double stored : flow_->stored()) missing -= stored;
         if (std::abs(missing) <= rounding * water) return;
         std::vector<double> share(pressure.size(), 0.0), saturation(pressure.size(), 0.0);
         std::vector<size_t> soil(pressure.size(), 0);
         for (size_t i = 0; i < flow_->network.portions.size(); ++i) {
             const auto node = static_cast<size_t>(flow_->network.portions[i].node);
-            if (pressure[node] >= 0 || flow_->is_held(node)) continue;
+            if (flow_->is_held(node)) continue;
+            if (pressure[node] >= 0) {
+                full += state_.pore_volume[i];
+                continue;
+            }
             soil[node] = static_cast<size_t>(flow_->network.portions[i].soil);
             saturation[node] = flow_->state()[i].saturation;
             const Retention& retention = scene_.soils[soil[node]].hydraulics.retention;
@@ -111,11 +115,16 @@ void Simulation::hold_water(double water) {
                 (retention.maximum_saturation - saturation[node]) * (saturation[node] - retention.residual_saturation);
             room += state_.pore_volume[i] * share[node];
         }
-        if (!(room > 0)) return;
+        const double moved = std::clamp(missing, -0.5 * room, 0.5 * room);
+        const double pressed = full > 0 ? scene_.water.bulk_modulus * (missing - moved) / full : 0;
         for (size_t node = 0; node < pressure.size(); ++node) {
-            if (share[node] > 0)
+            if (flow_->is_held(node)) continue;
+            if (pressure[node] >= 0) {
+                pressure[node] = std::max(pressure[node] + pressed, 0.0);
+            } else if (share[node] > 0) {
                 pressure[node] =
-                    flow_->table(soil[node]).pressure_of_saturation(saturation[node] + missing / room * share[node]);
+                    flow_->table(soil[node]).pressure_of_saturation(saturation[node] + moved / room * share[node]);
+            }
         }
     }
 }

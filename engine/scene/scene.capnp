@@ -96,7 +96,8 @@ enum Regime {
   # beyond the ground. Ground that leaves a side without a wall moves freely. Where there is
   # water it has a velocity of its own; the surface takes rain and lets water out, all other sides are closed as soon as the ground moves.
   auto @2;
-  # Quasi-static until equilibrium is lost, dynamic from there until the ground rests; what is said of both holds.
+  # Quasi-static until equilibrium is lost, dynamic from there until the ground rests, then quasi-static again on a mesh under its surface as it lies by then; what is said of both
+  # holds. Ground whose gas moves, or that has come to be thinner than a cell of the grid somewhere between its sides, stays as it came to rest.
 }
 
 enum StressMeasure {
