@@ -101,21 +101,39 @@ def displaced(points):
 def draw_points(axes, points, extent, inches, **options):
     """Each as a square, in the colour of how far it has come."""
     spacing = numpy.sqrt(points["point_volume"].mean())
-    size = max((spacing / extent * inches * 72 * 0.9) ** 2, 0.2)  # in points of a seventy-second of an inch
+    size = max((spacing / extent * inches * 72) ** 2, 0.2)  # in points of a seventy-second of an inch
     x, y = points["position"][:, 0], points["position"][:, 1]
     return axes.scatter(x, y, c=displaced(points), s=size, cmap="viridis", marker="s", linewidths=0, **options)
 
 
+def motion_starts(run):
+    """Of ground that stood at first; ground that moves from the start has none."""
+    return [event["time"] for event in run.report["events"] if event["kind"] == "motion_started"]
+
+
+def main_motion(run):
+    """The times of the fields within the motion that brought the ground farthest: ground that settles may fail again."""
+    starts = motion_starts(run)
+    if not starts:
+        return run.moving_times
+    motions = [[time for time in run.moving_times if start <= time < end] for start, end in zip(starts, starts[1:] + [numpy.inf])]
+
+    def come(times):
+        return displaced(run.fields(times[-1]).points).max() - displaced(run.fields(times[0]).points).max()
+    return max(filter(None, motions), key=come)
+
+
 def motion_time_text(run, time):
-    """Of ground that stood at first: since the motion began."""
-    began = next((event["time"] for event in run.report["events"] if event["kind"] == "motion_started"), None)
-    return time_text(time) if began is None else f"{time_text(round(began, 1))} and {time - began:.1f} s"
+    """Since the motion began, of ground that stood at first."""
+    began = max((start for start in motion_starts(run) if start <= time), default=None)
+    return time_text(time) if began is None else f"{began / HOUR:.2f} h and {time - began:.1f} s"
 
 
 def draw_frames(run, figure):
     """One below the other, or side by side where the ground is higher than wide."""
-    width, height = numpy.ptp(run.fields(run.moving_times[-1]).points["position"][:, :2], axis=0)
-    times, upright = spread(run.moving_times, 8), height > 2 * width
+    times = spread(main_motion(run), 8)
+    width, height = numpy.ptp(run.fields(times[-1]).points["position"][:, :2], axis=0)
+    upright = height > 2 * width
     count = len(times)
     figure.set_size_inches(*((2 * count, 7) if upright else (7, 2 * count)))
     frames = figure.subplots(*((1, count) if upright else (count, 1)), sharex=True, sharey=True, squeeze=False).ravel()
@@ -133,7 +151,7 @@ def draw_frames(run, figure):
 
 def draw_animation(run, path):
     """The motion, as an animated picture."""
-    times = spread(run.moving_times, 100)
+    times = spread(main_motion(run), 100)
     frames = [run.fields(time).points for time in times]
     low = numpy.min([points["position"][:, :2].min(axis=0) for points in frames], axis=0)
     high = numpy.max([points["position"][:, :2].max(axis=0) for points in frames], axis=0)
@@ -157,13 +175,18 @@ def draw_animation(run, path):
 
 def draw_energy(run, figure):
     energies, run_out = figure.subplots(2, 1, sharex=True)
-    time = run.steps("time")
+    times, starts = main_motion(run), motion_starts(run)
+    start = times[0] if starts else 0
+    moves = numpy.array([step["regime"] in ("dynamic", "at_rest") for step in run.report["steps"]])
+    shown = moves & (run.steps("time") >= start) & (run.steps("time") <= times[-1] if starts else True)
+    time = run.steps("time")[shown] - start
     for name in ("kinetic", "elastic", "potential", "dissipated"):
-        energies.plot(time, run.steps(f"{name}_energy"), label=name)
-    energies.set_ylabel("energy, J/m")
+        energy = run.steps(f"{name}_energy")[shown]
+        energies.plot(time, energy - energy[0] if name == "potential" else energy, label=name)
+    energies.set_ylabel("energy, potential since then, J/m")
     energies.legend()
-    run_out.plot(time, run.steps("run_out"))
-    run_out.set(xlabel="time, s", ylabel="run-out, m")
+    run_out.plot(time, run.steps("run_out")[shown])
+    run_out.set(xlabel=f"time since {start / HOUR:.2f} h, s" if starts else "time, s", ylabel="run-out, m")
 
 
 # --- histories and water ---

@@ -18,10 +18,9 @@ namespace {
 constexpr int64_t substeps_a_look = 16;
 constexpr double rest_share = 1e-3;  // of the largest kinetic energy of the motion: below it for
 constexpr double rest_time = 1;      // s, the ground rests;
-constexpr double slow_speed =
-    1e-2;  // or where no point is faster than so much of the speed sqrt(g h) of a fall through a cell
-constexpr double slow_time = 30;    // for so much of its time sqrt(h / g): what starts to slide is slow, too
-constexpr double most_nodes = 2e7;  // of the grid: 1.3 GB
+constexpr double window_falls = 30;  // or where within so many times sqrt(h / g), about that of a fall through a cell,
+constexpr double rest_come = 0.1;    // no point has come further by so much of the cell: elastic ground rings on
+constexpr double most_nodes = 2e7;   // of the grid: 1.3 GB
 
 double sin_degrees(double angle) { return std::sin(angle * std::numbers::pi / 180); }
 double tan_degrees(double angle) { return std::tan(angle * std::numbers::pi / 180); }
@@ -117,22 +116,24 @@ double find_cell_size(const Scene& scene, const Walls& walls) {
 
 // --- the points ------------------------------------------------------------------------------------------------------
 
-/// Stress at a place, of the mesh's points; outside the mesh, where the middle of a piece of concave ground may lie, of the cell's first one.
-std::array<double, 4> stress_at(const Mesh& mesh, const Points& points, const CellPlace& place, int32_t cell) {
-    std::array<double, 4> stress{};
+/// Values at a place from those of the mesh's points, `rows`; outside the mesh, where the middle of a piece of concave ground may lie, the cell's first one's.
+template <size_t components>
+std::array<double, components> from_mesh_points(const Mesh& mesh, const Points& points, std::span<const double> rows,
+                                                const CellPlace& place, int32_t cell) {
+    std::array<double, components> values{};
     const auto found = static_cast<size_t>(place.cell >= 0 ? place.cell : cell);
-    const double* rows = points.skeleton_stress.data() + 4 * static_cast<size_t>(points.cell_start[found]);
+    const double* first = rows.data() + components * static_cast<size_t>(points.cell_start[found]);
     if (place.cell < 0) {
-        std::copy_n(rows, 4, stress.begin());
-        return stress;
+        std::copy_n(first, components, values.begin());
+        return values;
     }
     with_shape(mesh.cell_start[found + 1] - mesh.cell_start[found], [&](auto shape) {
         using Shape = decltype(shape);
         typename Shape::Natural at{};
         std::copy_n(place.natural.begin(), Shape::dimension, at.begin());
-        sample_points<Shape>(rows, 4, at, stress);
+        sample_points<Shape>(first, components, at, values);
     });
-    return stress;
+    return values;
 }
 
 SeededPoints make_free_points(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Locator& locator,
@@ -144,7 +145,7 @@ SeededPoints make_free_points(const Scene& scene, const Mesh& mesh, const Points
     if (scene.initial.stress == InitialStress::zero) return seeded;
     for (size_t p = 0; p < seeded.points.count; ++p) {
         const CellPlace place = locator.locate(seeded.points[position_x][p], seeded.points[position_y][p]);
-        const std::array<double, 4> stress = stress_at(mesh, mesh_points, place, seeded.cell[p]);
+        const auto stress = from_mesh_points<4>(mesh, mesh_points, mesh_points.skeleton_stress, place, seeded.cell[p]);
         for (const size_t k : {0, 1, 2, 3}) seeded.points.field[stress_xx + k][p] = stress[k];
     }
     return seeded;
@@ -266,11 +267,11 @@ bool is_finite(const FreePoints& points, PointField name) {
 }
 
 /// The plastic strain with which the points have lost their share of strength.
-void soften(const Scene& scene, const Mesh& mesh, const Locator& locator, std::span<const double> lost_strength,
-            SeededPoints& seeded, double cell_size) {
+void soften(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Locator& locator,
+            std::span<const double> lost_strength, SeededPoints& seeded, double cell_size) {
     for (size_t p = 0; p < seeded.points.count; ++p) {
         const CellPlace place = locator.locate(seeded.points[position_x][p], seeded.points[position_y][p]);
-        const double lost = value_at(mesh, lost_strength, place, seeded.cell[p]);
+        const auto [lost] = from_mesh_points<1>(mesh, mesh_points, lost_strength, place, seeded.cell[p]);
         const double slip = scene.soils[static_cast<size_t>(seeded.points.soil[p])].solid.softening.slip;
         seeded.points[plastic_shear_strain][p] = lost * slip / (std::sqrt(3.0) * cell_size);
     }
@@ -331,7 +332,8 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
     const Locator locator(mesh);
     SeededPoints seeded = make_free_points(scene, mesh, mesh_points, locator, walls, cell_size);
     if (!handover.soil_mass.empty()) keep_mass(handover.soil_mass, seeded.points);
-    if (!handover.lost_strength.empty()) soften(scene, mesh, locator, handover.lost_strength, seeded, cell_size);
+    if (!handover.lost_strength.empty())
+        soften(scene, mesh, mesh_points, locator, handover.lost_strength, seeded, cell_size);
     if (handover.pressure.empty()) {
         return Motion(std::in_place_type<ExplicitMotion>, cell_size, walls, scene.gravity, explicit_soils(scene),
                       std::move(seeded.points), threads, scene.dynamics.rest_speed);
@@ -380,9 +382,9 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
         start_position_[2 * number] = points[position_x][p];
         start_position_[2 * number + 1] = points[position_y][p];
     }
-    watch_.moved_last = watch_.fast_last = handover.time;
-    slow_speed_ = slow_speed * std::sqrt(scene.gravity * cell_size());
-    slow_time_ = slow_time * std::sqrt(cell_size() / scene.gravity);
+    window_ = window_falls * std::sqrt(cell_size() / scene.gravity);
+    watch_.moved_last = handover.time;
+    if (may_rest_) start_window(handover.time);
     if (!handover.displacement.empty()) subtract_displacement(mesh, handover.displacement, points, start_position_);
 }
 
@@ -438,14 +440,36 @@ void DynamicGround::look(const Moving& motion, double time) {
     check_pores(time);
     if (static_cast<double>(motion.grid().nodes()) > most_nodes)
         stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");
-    const double speed = largest_speed(points);
-    peak_velocity_ = std::max(peak_velocity_, speed);
+    peak_velocity_ = std::max(peak_velocity_, largest_speed(points));
     if (!may_rest_) return;
     const double kinetic = motion.energies().kinetic;
     watch_.peak_energy = std::max(watch_.peak_energy, kinetic);
     if (kinetic > rest_share * watch_.peak_energy) watch_.moved_last = time;
-    if (speed > slow_speed_) watch_.fast_last = time;
-    rests_ = time - watch_.moved_last >= rest_time || time - watch_.fast_last >= slow_time_;
+    rests_ = time - watch_.moved_last >= rest_time;
+    if (time - watch_.window_start < window_) return;
+    rests_ = rests_ || come_in_window() < rest_come * cell_size();
+    start_window(time);
+}
+
+void DynamicGround::start_window(double time) {
+    const FreePoints& points = this->points();
+    watch_.window_start = time;
+    watch_.window_position.resize(2 * points.count);
+    for (size_t p = 0; p < points.count; ++p) {
+        const auto number = static_cast<size_t>(points.number[p]);
+        watch_.window_position[2 * number] = points[position_x][p];
+        watch_.window_position[2 * number + 1] = points[position_y][p];
+    }
+}
+
+double DynamicGround::come_in_window() const {
+    const FreePoints& points = this->points();
+    double farthest = 0;
+    for (size_t p = 0; p < points.count; ++p) {
+        const double* start = &watch_.window_position[2 * static_cast<size_t>(points.number[p])];
+        farthest = std::max(farthest, std::hypot(points[position_x][p] - start[0], points[position_y][p] - start[1]));
+    }
+    return farthest;
 }
 
 void DynamicGround::restore(const FreePoints& points, const RestWatch& watch) {

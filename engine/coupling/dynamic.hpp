@@ -36,7 +36,7 @@ struct Handover {
     std::vector<double> soil_mass{};          ///< of each soil, kg per metre of thickness; empty: as its density says
     double water = 0;                         ///< m3 per metre of thickness; 0: as the pressures say
     double time = 0;                          ///< when, s
-    std::span<const double> lost_strength{};  ///< at the nodes, share of what softening takes; empty: none
+    std::span<const double> lost_strength{};  ///< of the mesh's points, share of what softening takes; empty: none
 };
 
 class DynamicGround {
@@ -55,8 +55,8 @@ public:
     [[nodiscard]] const RestWatch& rest_watch() const { return watch_; }
 
     [[nodiscard]] double time() const { return time_; }  ///< that the last advance came to, s
-    /// Whether the last advance ended because the kinetic energy had been below a thousandth of its peak for a second, or no point faster than a
-    /// hundredth of sqrt(g h), the speed of a fall through a cell, for 30 sqrt(h / g).
+    /// Whether the last advance ended because the kinetic energy had been below a thousandth of its peak for a second, or no point had come further by a
+    /// tenth of a cell's size h within 30 sqrt(h / g).
     [[nodiscard]] bool rests() const { return rests_; }
     [[nodiscard]] double rain_on(const RainAt& rain) const;  ///< m3/s, on the columns of the grid that hold ground
 
@@ -104,7 +104,9 @@ private:
     bool move(Moving& motion, double from, double until, const Cancelled& cancelled);
     template <class Moving>
     void look(const Moving& motion, double time);
-    [[nodiscard]] double solutes() const;  // kg, of air in the water less vapour
+    void start_window(double time);
+    [[nodiscard]] double come_in_window() const;  // m, of the point that has come farthest
+    [[nodiscard]] double solutes() const;         // kg, of air in the water less vapour
     void check_numbers() const;
     void check_pores(double time) const;
 
@@ -115,8 +117,7 @@ private:
     std::vector<double> grain_density_;  // per soil, kg/m3
     std::vector<double> start_position_;
     bool may_rest_ = false;  // whether the motion ends where it rests
-    double slow_speed_ = 0;  // m/s: where no point is faster for the
-    double slow_time_ = 0;   // s, the motion ends, too
+    double window_ = 0;      // s, in which ground that rests comes no further
     bool rests_ = false;
     double time_ = 0;  // s
     RestWatch watch_;

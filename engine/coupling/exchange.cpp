@@ -59,6 +59,8 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
         // Under pressures that are not those of the two, ground that yields may find no equilibrium, or one that is farther off.
         const bool yields = outcome_.yielding > 0;
         if (!is_found && !is_short && !state_.settles_jointly) return end_without(outcome_);
+        // Ground that softens as it slips goes no way that creep at a given strength would: inertia is to show where it comes to.
+        if (!is_found && is_short && !lost_strength_.empty()) return Exchange::gave_way;
         if (!is_found || (yields && (disagreement_ > first_disagreement || iteration == most_plain_iterations))) {
             const Exchange result = settle_jointly(duration, path, is_short, cancelled);
             if (result == Exchange::agreed || is_short) state_.settles_jointly = result == Exchange::agreed;
@@ -223,6 +225,7 @@ void Simulation::accept(double duration, const FlowState& flow) {
         state_.flow_pore_volume = taken_volume_;
     }
     equilibrium_->accept();
+    soften();
     state_.node_position = mesh_.position;
     state_.displacement.assign(equilibrium_->displacement().begin(), equilibrium_->displacement().end());
     refresh_geometry();

@@ -22,9 +22,10 @@ struct FlowWatch {
 
 /// How a motion comes to rest.
 struct RestWatch {
-    double peak_energy = 0;  ///< J, kinetic, since the motion began
-    double moved_last = 0;   ///< s, when the kinetic energy was last above the share of it that counts as rest
-    double fast_last = 0;    ///< s, when a point was last faster than what counts as slow
+    double peak_energy = 0;   ///< J, kinetic, since the motion began
+    double moved_last = 0;    ///< s, when the kinetic energy was last above the share of it that counts as rest
+    double window_start = 0;  ///< s
+    std::vector<double> window_position;  ///< of the points then, by their numbers, x, y, m
 };
 
 struct GroundState {

@@ -113,6 +113,12 @@ void Simulation::make_motion() {
     point_pore_stress_.assign(points, 0.0);
     point_density_.assign(points, 0.0);
     point_strength_.resize(points);
+    const auto softens = [](const Soil& soil) { return soil.solid.softening.slip > 0; };
+    if (scene_.physics.regime == MotionRegime::automatic &&
+        std::any_of(scene_.soils.begin(), scene_.soils.end(), softens)) {
+        for (auto* field : {&lost_strength_, &settled_lost_strength_, &settled_plastic_strain_})
+            field->assign(points, 0.0);
+    }
 
     const size_t freedoms = mesh_.position.size();
     state_.displacement.assign(freedoms, 0.0);

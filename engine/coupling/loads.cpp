@@ -84,8 +84,7 @@ void Simulation::set_loads(const FlowState& flow, double until) {
             effective = effective_of_saturation(retention, saturation);
         }
         point_strength_[p] = shear_strength(soil.solid.strength, suction, effective);
-        if (!point_lost_strength_.empty())
-            point_strength_[p] = softened(point_strength_[p], soil.solid, point_lost_strength_[p]);
+        if (!lost_strength_.empty()) point_strength_[p] = softened(point_strength_[p], soil.solid, lost_strength_[p]);
     }
     std::fill(node_force_.begin(), node_force_.end(), 0.0);
     for (const GivenTraction& given : given_tractions_) add_traction(given, until);
@@ -96,6 +95,24 @@ void Simulation::set_loads(const FlowState& flow, double until) {
     for (const GivenDisplacement& given : given_displacements_) {
         prescribed_displacement_[given.freedom] =
             forcing.motion_value(given.boundary, given.component, until) - state_.displacement[given.freedom];
+    }
+}
+
+// By the slip of the accepted state: the strength stays as it is through an exchange. A band is as thin as a cell, as in motion.
+void Simulation::soften() {
+    if (lost_strength_.empty()) return;
+    const Points& points = state_.points;
+    for (size_t c = 0; c < mesh_.cell_soil.size(); ++c) {
+        const double slip = scene_.soils[static_cast<size_t>(mesh_.cell_soil[c])].solid.softening.slip;
+        if (!(slip > 0)) continue;
+        const auto first = static_cast<size_t>(points.cell_start[c]),
+                   last = static_cast<size_t>(points.cell_start[c + 1]);
+        const double area = std::accumulate(initial_volume_.begin() + points.cell_start[c],
+                                            initial_volume_.begin() + points.cell_start[c + 1], 0.0);
+        for (size_t p = first; p < last; ++p) {
+            const double strain = points.plastic_strain[p] - settled_plastic_strain_[p];
+            lost_strength_[p] = std::min(settled_lost_strength_[p] + std::sqrt(3.0 * area) * strain / slip, 1.0);
+        }
     }
 }
 

@@ -144,8 +144,8 @@ void Simulation::take_stress(const Deposit& deposit) {
     };
     interpolate_component(deposit.stress, 4, points.skeleton_stress);
     interpolate_component(deposit.displacement, 2, points.displacement);
-    lost_strength_ = deposit.lost_strength;
-    interpolate_component(lost_strength_, 1, point_lost_strength_);
+    if (!lost_strength_.empty()) interpolate_component(deposit.lost_strength, 1, lost_strength_);
+    settled_lost_strength_ = lost_strength_;
 
     state_.displacement = deposit.displacement;
     for (const GivenDisplacement& given : given_displacements_)
@@ -158,6 +158,7 @@ void Simulation::take_stress(const Deposit& deposit) {
         equilibrium_->reject();
     }
     interpolate_component(deposit.plastic_strain, 1, points.plastic_strain);
+    if (!lost_strength_.empty()) settled_plastic_strain_ = points.plastic_strain;
     equilibrium_->restore(state_.displacement);
 }
 

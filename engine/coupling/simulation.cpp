@@ -36,6 +36,7 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
         const double duration = is_last ? left : std::min(state_.exchange_step, 0.5 * left);
         const auto watched = [&](double t) { return cancelled((state_.time + t - from) / whole); };
         const Exchange result = exchange(duration, duration < failure_window * whole, watched);
+        const Place giving_way = result == Exchange::gave_way ? place_of_largest_increment() : Place{};
         if (result != Exchange::agreed && skeleton_moves()) equilibrium_->reject();
         if (result != Exchange::agreed) state_.given_up_exchange = duration;
         switch (result) {
@@ -51,10 +52,13 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
                     lose_equilibrium();
                     state_.exchange_step = whole;
                     if (scene_.physics.regime != MotionRegime::automatic) break;
-                    start_motion();
+                    start_motion(outcome_.collapse.place);
                     return stop_at_motion_ || advance_dynamically(until, cancelled);
                 }
                 break;
+            case Exchange::gave_way:
+                start_motion(giving_way);
+                return stop_at_motion_ || advance_dynamically(until, cancelled);
             case Exchange::flow_stopped:
                 shorten_exchange(duration, whole,
                                  "the flow's equations were not solved within " + value_text(duration) + " s");
@@ -68,7 +72,7 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
 }
 
 // From the last state in equilibrium. That stays as it is, so that a step that fails later can go back to it.
-void Simulation::start_motion() {
+void Simulation::start_motion(Place place) {
     Handover handover{state_.flow.pressure, state_.displacement, {}, 0, state_.time, lost_strength_};
     handover.soil_mass.assign(scene_.soils.size(), 0.0);
     for (size_t p = 0; p < initial_volume_.size(); ++p) {
@@ -77,7 +81,7 @@ void Simulation::start_motion() {
     }
     if (flow_) handover.water = water_now();
     dynamic_ = std::make_unique<DynamicGround>(scene_, mesh_, state_.points, handover, threads_);
-    happenings.push_back({HappeningKind::motion_started, state_.time, outcome_.collapse.place, 0.0});
+    happenings.push_back({HappeningKind::motion_started, state_.time, place, 0.0});
 }
 
 // A dynamic ground: from one change of the rain to the next, in the regime `auto` until it rests; what finds no way back to equilibrium lies still then.
@@ -168,6 +172,7 @@ void Simulation::restore(const GroundState& state) {
     dynamic_.reset();  // the motion began in the step that is undone
     mesh_.position = state.node_position;
     if (equilibrium_) equilibrium_->restore(state.displacement);
+    soften();
     refresh_geometry();
 }
 
@@ -184,6 +189,19 @@ double Simulation::least_factor_of_safety() const {
     const double least =
         equilibrium_ ? equilibrium_->least_factor_of_safety() : std::numeric_limits<double>::infinity();
     return std::isfinite(least) ? least : 0.0;
+}
+
+Place Simulation::place_of_largest_increment() const {
+    const std::span<const double> increment = equilibrium_->increment();
+    const auto dimension = static_cast<size_t>(mesh_.dimension);
+    double largest = 0;
+    size_t place = 0;
+    for (size_t i = 0; i < increment.size(); ++i) {
+        if (std::abs(increment[i]) <= largest) continue;
+        largest = std::abs(increment[i]);
+        place = i / dimension;
+    }
+    return place_of(static_cast<int32_t>(place));
 }
 
 Place Simulation::place_of(int32_t node) const {

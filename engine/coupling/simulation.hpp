@@ -95,7 +95,7 @@ public:
 
 private:
     Simulation(const Simulation& moved, Deposit deposit);
-    void start_motion();
+    void start_motion(Place place);
     bool advance_dynamically(double until, const Cancelled& cancelled);
     void lie_still(double until);
     [[nodiscard]] double rain_at(double x, double time) const;  ///< m/s, 0 where no zone is
@@ -105,7 +105,7 @@ private:
         FlowWatch watch;
         std::vector<Happening> noticed;
     };
-    enum class Exchange { agreed, cancelled, disagreed, flow_stopped, equilibrium_lost };
+    enum class Exchange { agreed, cancelled, disagreed, flow_stopped, equilibrium_lost, gave_way };
 
     // initial state (initial.cpp)
     void make_flow();
@@ -149,6 +149,7 @@ private:
     EquilibriumOutcome find_equilibrium(const FlowState& flow, double until);
     // what passes between them (loads.cpp)
     void set_loads(const FlowState& flow, double until);
+    void soften();
     [[nodiscard]] double porosity(size_t point) const;
     void refresh_geometry();
     void set_projection();
@@ -157,6 +158,7 @@ private:
     [[nodiscard]] static bool is_full(std::span<const double> pressure);
     void notice(double time, std::span<const double> pressure, FlowWatch& watch, std::vector<Happening>& noticed) const;
     [[nodiscard]] Place place_of(int32_t node) const;
+    [[nodiscard]] Place place_of_largest_increment() const;
 
     const Scene& scene_;
     double tolerance_;
@@ -203,9 +205,9 @@ private:
     double disagreement_ = 0;    // largest difference of the two's pore volumes, over the one that is let stand
     std::vector<double> point_pore_stress_, point_density_, node_force_, prescribed_displacement_;
     std::vector<ShearStrength> point_strength_;
-    std::vector<double> initial_volume_;       // per point, m3
-    std::vector<double> lost_strength_;        // per node: share of what softening takes; empty: none has moved yet
-    std::vector<double> point_lost_strength_;  // the same per point
+    std::vector<double> initial_volume_;  // per point, m3
+    // Per point, where a soil of the regime auto softens: share of what that takes, and what it and the plastic strain were when the ground settled
+    std::vector<double> lost_strength_, settled_lost_strength_, settled_plastic_strain_;
     std::vector<double> conductivity_factor_;  // per cell; empty: 1
     EquilibriumOutcome outcome_;
 };

@@ -253,7 +253,7 @@ struct Solid {
   tensileStrength @5 :Float64 = inf $limits(unit = "Pa", low = 0, high = inf);
   # Largest tensile principal stress; left out: as much as the cone of Mohr-Coulomb bears.
   softening @6 :Softening;
-  # How its strength falls with slip, for `mohrCoulomb` in a dynamic ground.
+  # How its strength falls with slip, for `mohrCoulomb` in a ground whose regime is dynamic or auto.
   inertialFriction @7 :InertialFriction;
   # How its friction grows with the rate of shear, for `mohrCoulomb` in a dynamic ground.
 }

@@ -437,7 +437,7 @@ TEST_CASE("C API: a host that wants to see the ground move stops where it starts
     CHECK(report.kinetic_energy == 0);
     CHECK(report.time == talus_engine_time(engine.get()));
     talus_event event = TALUS_EVENT_INIT;
-    REQUIRE(talus_engine_event(engine.get(), 1, &event) == TALUS_OK);
+    REQUIRE(talus_engine_event(engine.get(), 0, &event) == TALUS_OK);
     CHECK(event.kind == TALUS_MOTION_STARTED);
     CHECK(event.time == report.time);
 
@@ -474,11 +474,11 @@ TEST_CASE("C API: from the storm through failure and motion to rest, with every 
     CHECK(plain.largest_displacement > 1);
     CHECK(std::abs(plain.water_residual) < 1e-8 * plain.water_rain);
     CHECK(plain.water_rain == doctest::Approx(3e-5 * 12 * plain.time).epsilon(1e-6));
-    REQUIRE(events >= 4);
-    for (int64_t i = 0; i < 4; ++i) {
+    REQUIRE(events >= 3);
+    for (int64_t i = 0; i < 3; ++i) {
         talus_event event = TALUS_EVENT_INIT;
         REQUIRE(talus_engine_event(twin.get(), i, &event) == TALUS_OK);
-        const int32_t kinds[] = {TALUS_LOSS_OF_EQUILIBRIUM, TALUS_MOTION_STARTED, TALUS_CAME_TO_REST, TALUS_SETTLED};
+        const int32_t kinds[] = {TALUS_MOTION_STARTED, TALUS_CAME_TO_REST, TALUS_SETTLED};
         CHECK(event.kind == kinds[i]);
         CHECK(event.time > before);
     }

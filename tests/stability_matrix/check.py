@@ -63,17 +63,24 @@ class Watch:
     """Collects over the steps of a run."""
 
     def __init__(self, engine, scene):
-        self.engine, self.fields = engine, engine.fields
-        self.is_wet = "saturation" in self.fields
-        self.is_column = engine.describe()["dimension"] == 1
-        self.is_dynamic = "point_soil" in self.fields
+        self.engine, self.scene = engine, scene
         self.seen = {"not_finite": [], "out_of_range": 0.0, "overshoot_saturation": 0.0, "overshoot_pressure": 0.0,
                      "yield_exceeded": 0.0}
-        self.yield_check = YieldCheck(engine, scene, soil_of_points(engine)) if "net_stress" in self.fields else None
+        self.learn()
+
+    def learn(self):
+        """What the ground is made of: of another mesh or of points where it has failed or settled."""
+        engine, description = self.engine, self.engine.describe()
+        self.made_of = description["points"], description["nodes"]
+        self.fields = engine.fields
+        self.is_wet = "saturation" in self.fields
+        self.is_column = description["dimension"] == 1
+        self.is_dynamic = "point_soil" in self.fields
+        soils = soil_of_points(engine)
+        self.yield_check = YieldCheck(engine, self.scene, soils) if "net_stress" in self.fields else None
         if not self.is_wet:
             return
-        retention = [soil["hydraulics"]["retention"] for soil in scene["soils"]]
-        soils = soil_of_points(engine)
+        retention = [soil["hydraulics"]["retention"] for soil in self.scene["soils"]]
         self.least = numpy.array([curve.get("residualSaturation", 0.0) for curve in retention])[soils]
         self.most = numpy.array([curve.get("maximumSaturation", 1.0) for curve in retention])[soils]
         if self.is_column:
@@ -87,6 +94,9 @@ class Watch:
         self.seen[name] = float(numpy.maximum(self.seen[name], value))  # NaN stays
 
     def look(self):
+        description = self.engine.describe()
+        if (description["points"], description["nodes"]) != self.made_of:
+            self.learn()
         for name in self.fields:
             if not numpy.isfinite(self.engine.read(name)).all() and name not in self.seen["not_finite"]:
                 self.seen["not_finite"].append(name)
@@ -96,8 +106,9 @@ class Watch:
             self._raise("yield_exceeded", self.yield_check())
 
     def strength_holds(self):
-        """Not beyond a loss of equilibrium, where the stress stands and the suction goes on; nor before ground that need not stand moves."""
-        return not has_lost_equilibrium(self.engine) and not (self.is_dynamic and self.engine.time == 0)
+        """Not where equilibrium is lost, and the stress stands while the suction goes on; nor before ground that need not stand moves."""
+        has_lost = has_lost_equilibrium(self.engine) or self.engine.report()["regime"] == "equilibrium_lost"
+        return not has_lost and not (self.is_dynamic and self.engine.report()["kinetic_energy"] == 0)
 
     def look_at_water(self):
         saturation = self.engine.read("saturation")

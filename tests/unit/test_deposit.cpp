@@ -43,14 +43,13 @@ double height_of(double x) { return x < 4 ? 6 : x < 10 ? 6 - (x - 4) / 2 : 3; }
 struct Bank {
     Scene scene = read_json(bank_text);
     Mesh mesh;
-    std::vector<double> pressure, lost;
+    std::vector<double> pressure;
 
     Bank() {
         validate(scene);
         mesh = build_mesh(scene);
         for (size_t i = 0; i < mesh.position.size(); i += 2) {
             pressure.push_back(water_weight * (water_table - mesh.position[i + 1]));
-            lost.push_back(mesh.position[i + 1] / 6);
         }
     }
 
@@ -62,6 +61,8 @@ struct Bank {
                                           {vertical / 2, vertical, vertical / 2, vertical / 10});
         }
         Handover handover;
+        std::vector<double> lost;
+        for (size_t p = 0; p < static_cast<size_t>(points.count); ++p) lost.push_back(points.position[2 * p + 1] / 6);
         handover.pressure = pressure;
         handover.lost_strength = lost;
         return {scene, mesh, points, handover, 1};
