@@ -156,7 +156,7 @@ void Engine::State::follow_points() {
     number_point_soils();
     // By where they lay at the start: within the step they may have moved already.
     const NearestPlace start(simulation->dynamic()->start_position(), simulation->dynamic()->cell_size());
-    for (ProbeTrack& probe : probes) probe.point = start.find(probe.place[0], probe.place[1]);
+    for (ProbeTrack& probe : probes) probe.point = start.find(probe.start[0], probe.start[1]);
     description = describe();
 }
 

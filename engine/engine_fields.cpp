@@ -235,7 +235,10 @@ std::vector<std::string> Engine::State::probe_quantities() const {
 }
 
 ProbeTrack Engine::State::make_probe(const std::string& name, Place place) const {
-    ProbeTrack probe{name, place, {}, -1, std::vector<std::vector<double>>(quantities.size())};
+    ProbeTrack probe{name, place, place, {}, -1, std::vector<std::vector<double>>(quantities.size())};
+    std::array<double, 2> moved{};
+    if (scene->physics.regime == MotionRegime::automatic && sample(view("displacement"), place[0], place[1], moved))
+        probe.start = {place[0] - moved[0], place[1] - moved[1]};
     if (simulation->dynamic() != nullptr) {
         probe.point = nearest_point(place[0], place[1]);
     } else {
@@ -251,14 +254,15 @@ void Engine::State::follow_mesh() {
     const Points& points = simulation->state().points;
     std::vector<double> start(points.position);
     for (size_t i = 0; i < start.size(); ++i) start[i] -= points.displacement[i];
-    const NearestPlace nearest_start(start, scene->dynamics.cell_size);
+    const double largest = *std::max_element(points.volume.begin(), points.volume.end());
+    const NearestPlace nearest_start(start, scene->dynamics.cell_size + 2 * std::sqrt(largest));
     for (ProbeTrack& probe : probes) {
         probe.cell_place = {};
         probe.point = -1;
-        const int32_t nearest_one = nearest_start.find(probe.place[0], probe.place[1]);
+        const int32_t nearest_one = nearest_start.find(probe.start[0], probe.start[1]);
         if (nearest_one < 0) continue;
         const double* displacement = &points.displacement[2 * static_cast<size_t>(nearest_one)];
-        probe.cell_place = locator.locate(probe.place[0] + displacement[0], probe.place[1] + displacement[1]);
+        probe.cell_place = locator.locate(probe.start[0] + displacement[0], probe.start[1] + displacement[1]);
         if (probe.cell_place.cell >= 0) continue;
         const double* position = &points.position[2 * static_cast<size_t>(nearest_one)];
         probe.cell_place = locator.locate(position[0], position[1]);

@@ -17,7 +17,8 @@ namespace talus {
 /// A probe stays with the ground: it is a place in a cell, or a material point, not a place in space.
 struct ProbeTrack {
     std::string name;
-    Place place;                               ///< at the start, m
+    Place place;                               ///< where it was put, m
+    Place start;                               ///< where the ground there lay at the start, m
     CellPlace cell_place;                      ///< of a quasi-static ground
     int32_t point = -1;                        ///< of a dynamic one: the nearest to the place
     std::vector<std::vector<double>> history;  ///< one a quantity, one value a row of Engine::State::probe_times

@@ -152,7 +152,8 @@ void Simulation::take_stress(const Deposit& deposit) {
         state_.displacement[given.freedom] = forcing.motion_value(given.boundary, given.component, state_.time);
     equilibrium_->restore(state_.displacement);
     set_loads(state_.flow, state_.time);
-    outcome_ = settle_in_place(*equilibrium_, loads());
+    constexpr int32_t most_creep_steps = 400;  // what rests is not far from equilibrium, or in none
+    outcome_ = settle_in_place(*equilibrium_, loads(), most_creep_steps);
     if (outcome_.status != EquilibriumStatus::converged) {
         state_.equilibrium_lost = true;
         equilibrium_->reject();

@@ -84,7 +84,7 @@ void Simulation::start_motion(Place place) {
     happenings.push_back({HappeningKind::motion_started, state_.time, place, 0.0});
 }
 
-// A dynamic ground: from one change of the rain to the next, in the regime `auto` until it rests; what finds no way back to equilibrium lies still then.
+// A dynamic ground: from one change of the rain to the next, in the regime `auto` until it rests. What cannot settle then lies still.
 bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
     const double from = state_.time;
     while (state_.time < until) {

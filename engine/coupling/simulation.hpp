@@ -48,8 +48,9 @@ struct Happening {
     HappeningKind kind;
     double time;  ///< s
     Place place;  ///< m
-    double
-        value;  ///< of loss_of_equilibrium: largest displacement of the moving mass while it was watched, m; of settled: 1 in equilibrium, 0 where none was found
+    /// Of loss_of_equilibrium: largest displacement of the moving mass while it was watched, m. Of came_to_rest: volume that moved by more than a cell, m3.
+    /// Of settled: 1 in equilibrium, 0 where none was found.
+    double value;
 };
 
 class Simulation {

@@ -13,8 +13,8 @@ EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads)
 EquilibriumOutcome turn_on_gravity_elastically(Equilibrium& equilibrium, const Loads& loads);
 
 /// Equilibrium with the soils' strength from the stress that there is, all loads at once. The stress is accepted where the outcome is converged: the
-/// ground takes it where it lies.
-EquilibriumOutcome settle_in_place(Equilibrium& equilibrium, const Loads& loads);
+/// ground takes it where it lies. After so many steps of creep it is given up.
+EquilibriumOutcome settle_in_place(Equilibrium& equilibrium, const Loads& loads, int32_t most_creep_steps);
 
 /// Vertical stress from the weight above each point, horizontal skeleton stress `k0` times the vertical one; in no equilibrium. `gravity` in
 /// m/s2.
