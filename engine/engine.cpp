@@ -27,10 +27,11 @@ size_t checked_index(int32_t index, size_t count, const char* what) {
 }
 
 void check_series(const std::string& what, std::span<const double> time, std::span<const double> value, double now) {
-    if (time.empty() || time.size() != value.size())
+    if (time.empty() || time.size() != value.size()) {
         throw Error(Status::invalid_argument, what + ": " + std::to_string(time.size()) + " times and " +
                                                   std::to_string(value.size()) +
                                                   " values; must be as many, and one at least");
+    }
     for (size_t k = 0; k < time.size(); ++k) {
         const std::string place = what + ": time[" + std::to_string(k) + "] = " + value_text(time[k]) + " s";
         if (!std::isfinite(time[k])) throw Error(Status::invalid_argument, place + " must be finite");
@@ -38,9 +39,10 @@ void check_series(const std::string& what, std::span<const double> time, std::sp
             throw Error(Status::invalid_argument, place + " must not lie before now, " + value_text(now) + " s");
         if (k > 0 && time[k] <= time[k - 1])
             throw Error(Status::invalid_argument, place + " must be after time[" + std::to_string(k - 1) + "]");
-        if (!std::isfinite(value[k]))
+        if (!std::isfinite(value[k])) {
             throw Error(Status::invalid_argument,
                         what + ": value[" + std::to_string(k) + "] = " + value_text(value[k]) + " must be finite");
+        }
     }
 }
 
@@ -123,9 +125,10 @@ Engine::State::State(std::shared_ptr<const Scene> scene_in, Options options_in)
     for (size_t k = 0; k < scene->probes.size(); ++k) {
         const auto [x, y] = scene->probes[k].place;
         probes.push_back(make_probe(scene->probes[k].name, {x, y}));
-        if (!lies_in_ground(probes.back()))
+        if (!lies_in_ground(probes.back())) {
             throw Error(Status::invalid_scene, item_path("probes", k) + ".place = (" + value_text(x) + ", " +
                                                    value_text(y) + ") m: must lie in the ground");
+        }
     }
     record_probes();
     if (simulation->dynamic() != nullptr) report_motion();
@@ -185,9 +188,10 @@ void Engine::push_flow_value(int32_t boundary, std::span<const double> time, std
     const FlowCondition flow = boundaries[index].flow;
     const bool takes =
         flow == FlowCondition::pressure || flow == FlowCondition::hydrostatic || flow == FlowCondition::flux;
-    if (!boundaries[index].has_flow || !takes || !state_->scene->physics.water)
+    if (!boundaries[index].has_flow || !takes || !state_->scene->physics.water) {
         throw Error(Status::invalid_argument,
                     what + ": it has none; only pressure, hydrostatic and flux conditions take values in time");
+    }
     check_series(what, time, value, this->time());
     state_->simulation->forcing.push_flow_value(index, time, value);
 }
@@ -197,14 +201,16 @@ void Engine::push_motion_value(int32_t boundary, int32_t component, std::span<co
     const auto& boundaries = state_->scene->boundaries;
     const size_t index = checked_index(boundary, boundaries.size(), "boundary");
     const std::string what = "motion value of boundary '" + boundaries[index].name + "'";
-    if (component < 0 || component > 1)
+    if (component < 0 || component > 1) {
         throw Error(Status::invalid_argument,
                     what + ": component is " + std::to_string(component) + ": must be 0 (x) or 1 (y)");
+    }
     const auto axis = static_cast<size_t>(component);
-    if (!state_->scene->physics.deforming || !state_->simulation->forcing.has_motion_value(index, axis))
+    if (!state_->scene->physics.deforming || !state_->simulation->forcing.has_motion_value(index, axis)) {
         throw Error(
             Status::invalid_argument,
             what + ": it has none in this direction; only displacements and tractions of the scene change in time");
+    }
     check_series(what, time, value, this->time());
     state_->simulation->forcing.push_motion_value(index, axis, time, value);
 }
@@ -221,10 +227,11 @@ Status Engine::advance_to(double until, StepReport& report) {
     State& state = *state_;
     const double from = time();
     constexpr double longest_step = 1e11;  // s: three thousand years
-    if (!(until > from) || !(until - from < longest_step))
+    if (!(until > from) || !(until - from < longest_step)) {
         throw Error(Status::invalid_argument, "a step from " + value_text(from) + " s to " + value_text(until) +
                                                   " s: must go forward, by less than " + value_text(longest_step) +
                                                   " s");
+    }
     const auto start = std::chrono::steady_clock::now();
     const GroundState before = state.simulation->save();
     const FlowStatistics flow_before = state.simulation->flow_statistics();
@@ -346,9 +353,10 @@ const Scene& Engine::scene() const { return *state_->scene; }
 
 bool Engine::sample(std::string_view field, std::span<const double> places, std::span<double> values) const {
     const FieldView view = state_->view(field);
-    if (view.location == Location::mesh || view.type != DataType::float64)
+    if (view.location == Location::mesh || view.type != DataType::float64) {
         throw Error(Status::invalid_argument,
                     "field '" + std::string(field) + "' cannot be sampled: it is not a field over the ground");
+    }
     const auto dimension = static_cast<size_t>(state_->simulation->mesh().dimension);
     const auto components = static_cast<size_t>(view.components);
     bool all_inside = true;
@@ -373,9 +381,10 @@ int32_t Engine::probe(std::string_view name) const {
 
 int32_t Engine::add_probe(const std::string& name, Place place) {
     ProbeTrack probe = state_->make_probe(name, place);
-    if (!lies_in_ground(probe))
+    if (!lies_in_ground(probe)) {
         throw Error(Status::invalid_argument, "probe '" + name + "' at (" + value_text(place[0]) + ", " +
                                                   value_text(place[1]) + ") m: must lie in the ground");
+    }
     const std::vector<double> unknown(state_->probe_times.size() - 1, std::numeric_limits<double>::quiet_NaN());
     for (auto& history : probe.history) history = unknown;
     state_->record(probe);
@@ -388,9 +397,10 @@ std::span<const double> Engine::probe_times() const { return state_->probe_times
 std::span<const double> Engine::probe_history(int32_t probe, std::string_view quantity) const {
     const size_t index = checked_index(probe, state_->probes.size(), "probe");
     const auto found = std::find(state_->quantities.begin(), state_->quantities.end(), quantity);
-    if (found == state_->quantities.end())
+    if (found == state_->quantities.end()) {
         throw Error(Status::unknown_field,
                     "probes record no '" + std::string(quantity) + "'; they record " + joined(state_->quantities));
+    }
     return state_->probes[index].history[static_cast<size_t>(found - state_->quantities.begin())];
 }
 

@@ -65,9 +65,10 @@ std::vector<Place> find_terrain(const DynamicGround& ground, std::array<double, 
     height.back() *= 2;
     smooth(height);
     std::vector<Place> terrain;
-    for (size_t k = 0; k <= columns; ++k)
+    for (size_t k = 0; k <= columns; ++k) {
         terrain.push_back({k < columns ? sides[0] + static_cast<double>(k) * column : sides[1],
                            ground.walls().base.place + height[k]});
+    }
     return terrain;
 }
 
@@ -137,9 +138,10 @@ public:
         columns_ = 1 + static_cast<int64_t>((*right - *left) / size);
         rows_ = 1 + static_cast<int64_t>((*high - *low) / size);
         bins_.resize(static_cast<size_t>(columns_ * rows_));
-        for (size_t p = 0; p < points.count; ++p)
+        for (size_t p = 0; p < points.count; ++p) {
             bins_[static_cast<size_t>(bin(points[position_y][p], 1) * columns_ + bin(points[position_x][p], 0))]
                 .push_back(p);
+        }
     }
 
     /// Calls visit(point) for those in the squares around a place.

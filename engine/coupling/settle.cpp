@@ -5,6 +5,7 @@
 #include "points/quadrature.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -54,10 +55,11 @@ Simulation::Simulation(const Simulation& moved, Deposit deposit)
 // The mass of the points, and so their pores: cells that fit their ground less well than points have their porosity.
 void Simulation::take_grains(const Simulation& moved, Deposit& deposit) {
     const FreePoints& free = moved.dynamic_->points();
-    double mass = 0, found = 0;
+    double mass = 0;
     for (size_t p = 0; p < free.count; ++p) mass += free[solid_mass][p];
     std::vector<double> porosity(state_.points.volume.size());
-    const auto take = [&] {
+    const auto mass_taken = [&] {
+        double found = 0;
         interpolate(mesh_, state_.points, mesh_.cell_nodes, deposit.porosity, porosity);
         initial_volume_ = state_.points.volume;
         for (size_t p = 0; p < porosity.size(); ++p) {
@@ -65,10 +67,12 @@ void Simulation::take_grains(const Simulation& moved, Deposit& deposit) {
             initial_volume_[p] *= (1 - porosity[p]) / (1 - soil.porosity);
             found += soil.dry_density * initial_volume_[p];
         }
+        return found;
     };
-    take();
-    for (double& n : deposit.porosity) n = 1 - (1 - n) * mass / found;
-    take();
+    const double share = mass / mass_taken();
+    for (double& n : deposit.porosity) n = 1 - (1 - n) * share;
+    [[maybe_unused]] const double found = mass_taken();
+    assert(std::abs(found - mass) < 1e-12 * mass);
 }
 
 void Simulation::take_water(const Simulation& moved, const Deposit& deposit) {

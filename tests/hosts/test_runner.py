@@ -183,6 +183,11 @@ class Run(Folder):
         moving = [time for time in results.moving_times if time <= rested]  # the start of the motion, each of its steps, its end
         self.assertEqual((moving[0], moving[-1]), (begun, rested))
         self.assertEqual(moving[:-1], [begun + 0.5 * k for k in range(len(moving) - 1)])
+        with talus.Engine(talus.Scene.from_json(BANK), stop_at_motion=True) as engine:
+            status = "ok"
+            while status == "ok":
+                status = engine.step(600)["status"]
+            self.assertEqual((status, engine.time), ("ended_early", begun))
         self.assertEqual(results.report["last"]["regime"], "quasi_static")
         kinds = [event["kind"] for event in results.report["events"]]
         self.assertEqual(kinds[:3], ["motion_started", "came_to_rest", "settled"])

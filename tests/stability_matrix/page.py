@@ -37,7 +37,7 @@ weight of the column's height of water.
 Cases `limit_*` and `suction_lost` are loaded to 0.98 and 1.02 of what they bear, in closed form but for `limit_slope`:
 equilibrium must be lost beyond it and only there. Cases `dynamic*` move by their momentum; their substeps are the engine's own, so that none
 is too long; those of `dynamic_gas` have gas that moves (that it may be squeezed to a hundredth is shown by a unit test), those of `dynamic_exchange`
-the same that takes up vapour, under dry air, and air that dissolves.
+the same that takes up vapour, under dry air, and air that dissolves. Cases `auto*` stand in the rain until they fail, move, rest and settle, once or again and again.
 """
 
 

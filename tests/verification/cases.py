@@ -8,6 +8,7 @@ import engine_cases
 import explicit_exchange
 import explicit_motion
 import mandel
+import run_out
 import slopes
 import srivastava_yeh
 import terzaghi
@@ -33,4 +34,5 @@ CASES = {
     "slope": lambda: slopes.rows("slope"),
     "slope_triangles": slopes.triangles_rows,
     "slope_failure": slopes.failure_rows,
+    "slope_run_out": run_out.rows,
 }

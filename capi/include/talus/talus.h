@@ -181,11 +181,12 @@ typedef struct talus_step_report {
     double seconds_flow;               /* wall seconds of this step */
     double seconds_motion;
     double seconds_total;
-    int64_t motion_substeps;           /* this and what follows: of a dynamic ground, else 0; per metre of thickness */
+    int64_t motion_substeps;           /* this and what follows: of ground in motion, at the step's end or where it came to
+                                          rest within it; else 0; per metre of thickness */
     double kinetic_energy;             /* J, of the points' velocity */
     double elastic_energy;             /* J, of their stress */
     double potential_energy;           /* J, of their weight above y = 0 */
-    double dissipated_energy;          /* J: what the sum of the three has lost since the start */
+    double dissipated_energy;          /* J: what the sum of the three has lost since the start, or since the motion began */
     double peak_velocity;              /* m/s, largest of a point in the step, looked at every few substeps */
     double sliding_volume;             /* m3, of the points displaced by more than a cell's size since the start */
     double front_x;                    /* m, of the foremost of these, in the direction that they go on the whole */
