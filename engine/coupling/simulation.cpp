@@ -47,7 +47,7 @@ bool Simulation::advance(double until, const Cancelled& cancelled) {
                 break;
             case Exchange::equilibrium_lost:
                 if (duration > failure_window * whole) {
-                    state_.exchange_step = 0.25 * duration;
+                    state_.exchange_step = shorter_exchange(duration, whole);
                 } else {
                     lose_equilibrium();
                     state_.exchange_step = whole;
@@ -136,9 +136,15 @@ double Simulation::rain_at(double x, double time) const {
     return 0;
 }
 
+// Ground that softens gives way at once or not for a while: what lies between is dear to try.
+double Simulation::shorter_exchange(double duration, double whole) const {
+    const double window = 0.5 * failure_window * whole;
+    return lost_strength_.empty() || duration < window ? 0.25 * duration : std::min(0.25 * duration, window);
+}
+
 // What was expected of the skeleton may be what stopped the solvers, and is the less wrong the shorter the exchange.
 void Simulation::shorten_exchange(double duration, double whole, const std::string& problem) {
-    state_.exchange_step = 0.25 * duration;
+    state_.exchange_step = shorter_exchange(duration, whole);
     if (skeleton_moves() && state_.exchange_step >= shortest_exchange * whole) return;
     throw Error(Status::not_converged, at_time(state_.time) + problem + "; this says nothing about the slope");
 }

@@ -131,6 +131,7 @@ private:
     [[nodiscard]] static Exchange end_without(const EquilibriumOutcome& outcome);
     AdvanceResult advance_flow(double duration, FlowPath& path, const Cancelled& cancelled);
     [[nodiscard]] bool skeleton_moves() const { return equilibrium_ && !state_.equilibrium_lost; }
+    [[nodiscard]] double shorter_exchange(double duration, double whole) const;
     void shorten_exchange(double duration, double whole, const std::string& problem);
     void lose_equilibrium();
     void set_flow_forcing(double duration);
