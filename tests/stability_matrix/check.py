@@ -108,7 +108,7 @@ class Watch:
     def strength_holds(self):
         """Not where equilibrium is lost, and the stress stands while the suction goes on; nor before ground that need not stand moves."""
         has_lost = has_lost_equilibrium(self.engine) or self.engine.report()["regime"] == "equilibrium_lost"
-        return not has_lost and not (self.is_dynamic and self.engine.report()["kinetic_energy"] == 0)
+        return not has_lost and not (self.is_dynamic and self.engine.time == 0)
 
     def look_at_water(self):
         saturation = self.engine.read("saturation")
