@@ -66,7 +66,7 @@ enum class EventKind : int32_t {
     rain_ended = 6,           ///< the step went past the end of the rain series
     motion_started = 7,       ///< the ground that failed moves by its momentum
     came_to_rest = 8,         ///< the ground that moved rests
-    settled = 9,              ///< it is in equilibrium, on a mesh of its own
+    settled = 9,              ///< it lies on a mesh again; value 1: in equilibrium, 0: none found, its skeleton stands
 };
 
 struct Event {

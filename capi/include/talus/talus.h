@@ -97,7 +97,7 @@ typedef int32_t talus_status;
 #define TALUS_RAIN_ENDED 6        /* the step went past the end of the rain series */
 #define TALUS_MOTION_STARTED 7    /* the ground that failed moves by its momentum */
 #define TALUS_CAME_TO_REST 8      /* the ground that moved rests */
-#define TALUS_SETTLED 9           /* it is in equilibrium, on a mesh under its surface as it lies now */
+#define TALUS_SETTLED 9           /* it lies on a mesh again; value 1: in equilibrium, 0: none found, its skeleton stands */
 
 #define TALUS_RAIN_REJECT 0       /* what to do with a NaN or negative rate: an error, */
 #define TALUS_RAIN_HOLD 1         /* the last good rate before it, counted in the step report, */
