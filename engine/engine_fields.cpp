@@ -291,8 +291,7 @@ void Engine::State::record_row(const ProbeTrack& probe, std::string_view name, s
     if (simulation->dynamic() == nullptr && probe.cell_place.cell >= 0)
         return sample_cell(view(name), probe.cell_place, row);
     const std::string_view at_points = name == "pressure" ? "point_pressure" : name;
-    if (simulation->dynamic() != nullptr && probe.point >= 0 && has_point_field(at_points))
-        return copy_row(view(at_points), probe.point, row);
+    if (probe.point >= 0 && has_point_field(at_points)) return copy_row(view(at_points), probe.point, row);
     std::fill(row.begin(), row.end(), std::numeric_limits<double>::quiet_NaN());
 }
 

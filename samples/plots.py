@@ -3,6 +3,7 @@
 
 Usage: samples/plots.py FOLDER, where FOLDER is that of `talus run --out FOLDER`. The plots go there.
 """
+import functools
 import pathlib
 import sys
 
@@ -111,6 +112,7 @@ def motion_starts(run):
     return [event["time"] for event in run.report["events"] if event["kind"] == "motion_started"]
 
 
+@functools.cache
 def main_motion(run):
     """The times of the fields within the motion that brought the ground farthest: ground that settles may fail again."""
     starts = motion_starts(run)

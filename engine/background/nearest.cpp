@@ -1,9 +1,5 @@
 #include "background/nearest.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <tuple>
-
 namespace talus {
 
 NearestPlace::NearestPlace(std::span<const double> places, double reach) : reach_(reach) {
@@ -21,23 +17,15 @@ int64_t NearestPlace::bin(double coordinate) const {
 }
 
 int32_t NearestPlace::find(double x, double y) const {
-    if (!std::isfinite(x) || !std::isfinite(y)) return -1;
-    const int64_t row = bin(y), column = bin(x);
     int32_t nearest = -1;
     double least = reach_ * reach_;
-    for (int64_t near = row - 1; near <= row + 1; ++near) {
-        const auto is_before = [](const Entry& entry, const std::array<int64_t, 2>& at) {
-            return std::tie(entry.row, entry.column) < std::tie(at[0], at[1]);
-        };
-        auto entry = std::lower_bound(entries_.begin(), entries_.end(), std::array{near, column - 1}, is_before);
-        for (; entry != entries_.end() && entry->row == near && entry->column <= column + 1; ++entry) {
-            const double square = (entry->x - x) * (entry->x - x) + (entry->y - y) * (entry->y - y);
-            const bool is_nearer = square < least || (square == least && (nearest < 0 || entry->number < nearest));
-            if (!is_nearer) continue;
-            least = square;
-            nearest = entry->number;
-        }
-    }
+    visit_around(x, y, [&](int32_t number, double at_x, double at_y) {
+        const double square = (at_x - x) * (at_x - x) + (at_y - y) * (at_y - y);
+        const bool is_nearer = square < least || (square == least && (nearest < 0 || number < nearest));
+        if (!is_nearer) return;
+        least = square;
+        nearest = number;
+    });
     return nearest;
 }
 

@@ -1,5 +1,6 @@
 #include "coupling/deposit.hpp"
 
+#include "background/nearest.hpp"
 #include "ground/build.hpp"
 #include "materials/hydraulic/hydraulic_table.hpp"
 
@@ -128,58 +129,21 @@ std::vector<double> values_of(const DynamicGround& ground, size_t p, size_t soil
     return value;
 }
 
-/// The points by squares as large as a cell of the grid.
-class PointBins {
-public:
-    PointBins(const FreePoints& points, double size) : size_(size) {
-        const auto [left, right] = std::minmax_element(points[position_x], points[position_x] + points.count);
-        const auto [low, high] = std::minmax_element(points[position_y], points[position_y] + points.count);
-        corner_ = {*left, *low};
-        columns_ = 1 + static_cast<int64_t>((*right - *left) / size);
-        rows_ = 1 + static_cast<int64_t>((*high - *low) / size);
-        bins_.resize(static_cast<size_t>(columns_ * rows_));
-        for (size_t p = 0; p < points.count; ++p) {
-            bins_[static_cast<size_t>(bin(points[position_y][p], 1) * columns_ + bin(points[position_x][p], 0))]
-                .push_back(p);
-        }
-    }
-
-    /// Calls visit(point) for those in the squares around a place.
-    template <class Visit>
-    void visit_around(double x, double y, const Visit& visit) const {
-        const int64_t column = bin(x, 0), row = bin(y, 1);
-        for (int64_t j = std::max<int64_t>(row - 1, 0); j <= std::min(row + 1, rows_ - 1); ++j) {
-            for (int64_t i = std::max<int64_t>(column - 1, 0); i <= std::min(column + 1, columns_ - 1); ++i) {
-                for (const size_t p : bins_[static_cast<size_t>(j * columns_ + i)]) visit(p);
-            }
-        }
-    }
-
-private:
-    [[nodiscard]] int64_t bin(double coordinate, size_t axis) const {
-        return static_cast<int64_t>(std::floor((coordinate - corner_[axis]) / size_));
-    }
-
-    double size_;
-    Place corner_{};
-    int64_t columns_, rows_;
-    std::vector<std::vector<size_t>> bins_;
-};
-
 /// Values at a place by the plane that fits best to those of the points within a cell's size of it: beyond their range by half of it at most, which is how far the
 /// edge lies beyond two rows of points. False: there is none.
-bool fit(const FreePoints& points, const PointBins& bins, const std::vector<double>& point_values, const Place& place,
-         double size, std::span<double> values) {
+bool fit(const FreePoints& points, const NearestPlace& places, const std::vector<double>& point_values,
+         const Place& place, double size, std::span<double> values) {
     constexpr double beyond = 0.5;              // of the range of what has no bounds of its own
     constexpr double least_determinant = 1e-4;  // of the places' moments: on a line they make no plane
     const size_t quantities = values.size();
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
     std::vector<Eigen::Vector3d> sums(quantities, Eigen::Vector3d::Zero());
     std::vector<double> low(quantities, std::numeric_limits<double>::infinity()), high(quantities, -low[0]);
-    bins.visit_around(place[0], place[1], [&](size_t p) {
-        const double x = (points[position_x][p] - place[0]) / size, y = (points[position_y][p] - place[1]) / size;
-        const double weight = points[point_volume][p] * (1 - std::abs(x)) * (1 - std::abs(y));
+    places.visit_around(place[0], place[1], [&](int32_t number, double at_x, double at_y) {
+        const auto p = static_cast<size_t>(number);
+        const double x = (at_x - place[0]) / size, y = (at_y - place[1]) / size;
         if (std::abs(x) >= 1 || std::abs(y) >= 1) return;
+        const double weight = points[point_volume][p] * (1 - std::abs(x)) * (1 - std::abs(y));
         const Eigen::Vector3d plane{1.0, x, y};
         moments += weight * plane * plane.transpose();
         for (size_t q = 0; q < quantities; ++q) {
@@ -233,19 +197,20 @@ bool spread(const Mesh& mesh, size_t quantities, std::vector<uint8_t>& known, st
 std::vector<double> find_node_values(const DynamicGround& ground, const Mesh& mesh, size_t soils) {
     const FreePoints& points = ground.points();
     const size_t quantities = soil_shares + soils;
-    std::vector<double> point_values;
+    std::vector<double> point_values, positions;
     point_values.reserve(points.count * quantities);
     for (size_t p = 0; p < points.count; ++p) {
+        positions.insert(positions.end(), {points[position_x][p], points[position_y][p]});
         const std::vector<double> value = values_of(ground, p, soils);
         point_values.insert(point_values.end(), value.begin(), value.end());
     }
     const double size = ground.cell_size();
-    const PointBins bins(points, size);
+    const NearestPlace places(positions, size);
     const auto nodes = static_cast<size_t>(mesh.node_count());
     std::vector<double> values(nodes * quantities);
     std::vector<uint8_t> known(nodes);
     for (size_t node = 0; node < nodes; ++node) {
-        known[node] = fit(points, bins, point_values, {mesh.position[2 * node], mesh.position[2 * node + 1]}, size,
+        known[node] = fit(points, places, point_values, {mesh.position[2 * node], mesh.position[2 * node + 1]}, size,
                           std::span(values).subspan(node * quantities, quantities));
     }
     while (spread(mesh, quantities, known, values)) {

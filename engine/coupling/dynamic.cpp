@@ -194,6 +194,12 @@ double value_at(const Mesh& mesh, std::span<const double> node_value, const Cell
     return value;
 }
 
+/// What a point's grains leave of its volume, m2.
+double pores(const Scene& scene, const FreePoints& points, size_t p) {
+    const Soil& soil = scene.soils[static_cast<size_t>(points.soil[p])];
+    return points[point_volume][p] - points[solid_mass][p] * (1 - soil.porosity) / soil.dry_density;
+}
+
 /// The water that each point holds at the pressure of the place it lies in.
 void fill_with_water(const Scene& scene, const Mesh& mesh, const Locator& locator, std::span<const double> pressure,
                      const std::vector<int32_t>& cell, FreePoints& points) {
@@ -206,16 +212,13 @@ void fill_with_water(const Scene& scene, const Mesh& mesh, const Locator& locato
         const auto soil = static_cast<size_t>(points.soil[p]);
         const double saturation =
             tables[soil].at(here).saturation * (1 + std::max(here, 0.0) / scene.water.bulk_modulus);
-        const double grains = points[solid_mass][p] * (1 - scene.soils[soil].porosity) / scene.soils[soil].dry_density;
-        points[water_mass][p] = scene.water.density * saturation * (points[point_volume][p] - grains);
+        points[water_mass][p] = scene.water.density * saturation * pores(scene, points, p);
     }
 }
 
 /// What a point's water leaves of its pores, m2.
 double room_for_gas(const Scene& scene, const FreePoints& points, size_t p) {
-    const Soil& soil = scene.soils[static_cast<size_t>(points.soil[p])];
-    const double grains = points[solid_mass][p] * (1 - soil.porosity) / soil.dry_density;
-    return std::max(points[point_volume][p] - grains - points[water_mass][p] / scene.water.density, 0.0);
+    return std::max(pores(scene, points, p) - points[water_mass][p] / scene.water.density, 0.0);
 }
 
 /// Gas at the atmosphere's pressure in what the water leaves of the pores.
@@ -247,6 +250,17 @@ double held(const FreePoints& points, PointField mass, PointField due) {
     return sum;
 }
 
+/// x, y of each point, by its number, m.
+std::vector<double> positions(const FreePoints& points) {
+    std::vector<double> position(2 * points.count);
+    for (size_t p = 0; p < points.count; ++p) {
+        const auto number = static_cast<size_t>(points.number[p]);
+        position[2 * number] = points[position_x][p];
+        position[2 * number + 1] = points[position_y][p];
+    }
+    return position;
+}
+
 double largest_speed(const FreePoints& points) {
     double largest = 0;
     for (size_t p = 0; p < points.count; ++p)
@@ -273,7 +287,7 @@ void soften(const Scene& scene, const Mesh& mesh, const Points& mesh_points, con
         const CellPlace place = locator.locate(seeded.points[position_x][p], seeded.points[position_y][p]);
         const auto [lost] = from_mesh_points<1>(mesh, mesh_points, lost_strength, place, seeded.cell[p]);
         const double slip = scene.soils[static_cast<size_t>(seeded.points.soil[p])].solid.softening.slip;
-        seeded.points[plastic_shear_strain][p] = lost * slip / (std::sqrt(3.0) * cell_size);
+        seeded.points[plastic_shear_strain][p] = lost * slip / band_slip(1.0, cell_size);
     }
 }
 
@@ -375,17 +389,11 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
     start_solutes_ = solutes();
     start_energy_ = std::visit([](const auto& motion) { return sum(motion.energies()); }, motion_);
     for (const Soil& soil : scene.soils) grain_density_.push_back(soil.dry_density / (1 - soil.porosity));
-    const FreePoints& points = this->points();
-    start_position_.resize(2 * points.count);
-    for (size_t p = 0; p < points.count; ++p) {
-        const auto number = static_cast<size_t>(points.number[p]);
-        start_position_[2 * number] = points[position_x][p];
-        start_position_[2 * number + 1] = points[position_y][p];
-    }
+    start_position_ = positions(points());
     window_ = window_falls * std::sqrt(cell_size() / scene.gravity);
     watch_.moved_last = handover.time;
     if (may_rest_) start_window(handover.time);
-    if (!handover.displacement.empty()) subtract_displacement(mesh, handover.displacement, points, start_position_);
+    if (!handover.displacement.empty()) subtract_displacement(mesh, handover.displacement, points(), start_position_);
 }
 
 // The macro step of a dynamic ground: substeps of equal length, as long as the fastest wave and the fastest motion allow.
@@ -452,14 +460,8 @@ void DynamicGround::look(const Moving& motion, double time) {
 }
 
 void DynamicGround::start_window(double time) {
-    const FreePoints& points = this->points();
     watch_.window_start = time;
-    watch_.window_position.resize(2 * points.count);
-    for (size_t p = 0; p < points.count; ++p) {
-        const auto number = static_cast<size_t>(points.number[p]);
-        watch_.window_position[2 * number] = points[position_x][p];
-        watch_.window_position[2 * number + 1] = points[position_y][p];
-    }
+    watch_.window_position = positions(points());
 }
 
 double DynamicGround::come_in_window() const {
@@ -557,7 +559,7 @@ double DynamicGround::porosity(size_t point) const {
 double DynamicGround::lost_strength(size_t point) const {
     const ExplicitSoil& soil = soils_[static_cast<size_t>(points().soil[point])];
     if (soil.softening_slip <= 0) return 0;
-    return std::min(std::sqrt(3.0) * cell_size() * points()[plastic_shear_strain][point] / soil.softening_slip, 1.0);
+    return share_lost(soil, points()[plastic_shear_strain][point], cell_size());
 }
 
 WaterExchange DynamicGround::water_exchange() const {

@@ -107,11 +107,11 @@ void Simulation::soften() {
         if (!(slip > 0)) continue;
         const auto first = static_cast<size_t>(points.cell_start[c]),
                    last = static_cast<size_t>(points.cell_start[c + 1]);
-        const double area = std::accumulate(initial_volume_.begin() + points.cell_start[c],
-                                            initial_volume_.begin() + points.cell_start[c + 1], 0.0);
+        const double size = std::sqrt(std::accumulate(initial_volume_.begin() + points.cell_start[c],
+                                                      initial_volume_.begin() + points.cell_start[c + 1], 0.0));
         for (size_t p = first; p < last; ++p) {
             const double strain = points.plastic_strain[p] - settled_plastic_strain_[p];
-            lost_strength_[p] = std::min(settled_lost_strength_[p] + std::sqrt(3.0 * area) * strain / slip, 1.0);
+            lost_strength_[p] = std::min(settled_lost_strength_[p] + band_slip(strain, size) / slip, 1.0);
         }
     }
 }

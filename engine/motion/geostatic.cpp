@@ -49,7 +49,7 @@ std::vector<double> cell_means(const Points& points, std::span<const double> val
 }
 
 // The whole weight is one load that cannot be put on in parts: stress that the elastic solution gave stiff ground moves far.
-constexpr int32_t most_creep_steps = 2000;
+constexpr int32_t most_steps_at_start = 2000;
 
 }  // namespace
 
@@ -68,7 +68,7 @@ EquilibriumOutcome turn_on_gravity_elastically(Equilibrium& equilibrium, const L
 EquilibriumOutcome turn_on_gravity(Equilibrium& equilibrium, const Loads& loads) {
     const EquilibriumOutcome elastic = turn_on_gravity_elastically(equilibrium, loads);
     if (elastic.status != EquilibriumStatus::converged) return elastic;
-    return settle_in_place(equilibrium, loads, most_creep_steps);
+    return settle_in_place(equilibrium, loads, most_steps_at_start);
 }
 
 void put_k0_stress(const Mesh& mesh, Points& points, const Loads& loads, double gravity, double k0) {
@@ -93,7 +93,7 @@ EquilibriumOutcome set_k0_stress(Equilibrium& equilibrium, const Mesh& mesh, Poi
                                  double gravity, double k0) {
     put_k0_stress(mesh, points, loads, gravity, k0);
     equilibrium.accept_stress();
-    return settle_in_place(equilibrium, loads, most_creep_steps);
+    return settle_in_place(equilibrium, loads, most_steps_at_start);
 }
 
 }  // namespace talus

@@ -3,6 +3,8 @@
 
 #include "materials/solid/parameters.hpp"
 
+#include <cmath>
+
 namespace talus {
 
 /// What Mohr-Coulomb takes at one place and time.
@@ -14,6 +16,11 @@ struct ShearStrength {
 /// Strength at a suction (Pa; at or below zero it adds nothing) and an effective saturation (-, 0 to 1).
 /// The exponential form's friction angle, linear in suction, stays below 60 degrees, beyond any soil it was measured on.
 ShearStrength shear_strength(const Strength& strength, double suction, double effective_saturation);
+
+/// On a shear band as wide as a cell of this size (m), m: what softening goes by, so that a band dissipates the same in cells of any size.
+inline double band_slip(double plastic_shear_strain, double size) {
+    return std::sqrt(3.0) * size * plastic_shear_strain;
+}
 
 /// The strength of ground that has lost this share (0 to 1) of what the solid's softening takes.
 ShearStrength softened(const ShearStrength& strength, const Solid& solid, double lost);

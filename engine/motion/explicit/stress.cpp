@@ -100,8 +100,7 @@ void set_strength(const std::vector<ExplicitSoil>& soils, const FreePoints& poin
         block.sin_dilation[k] = soil.strength.sin_dilation;
         block.tensile_strength[k] = soil.strength.tensile_strength;
         if (soil.softening_slip <= 0) continue;
-        const double slip = std::sqrt(3.0) * cell_size * points[plastic_shear_strain][first + k];
-        const double lost = std::min(slip / soil.softening_slip, 1.0);
+        const double lost = share_lost(soil, points[plastic_shear_strain][first + k], cell_size);
         block.cohesion[k] += lost * (soil.residual_cohesion - soil.strength.cohesion);
         block.sin_friction[k] += lost * (soil.residual_sin_friction - soil.strength.sin_friction);
         block.cos_friction[k] = std::sqrt(1 - block.sin_friction[k] * block.sin_friction[k]);

@@ -3,9 +3,11 @@
 
 #include "background/grid.hpp"
 #include "materials/solid/mohr_coulomb.hpp"
+#include "materials/solid/strength.hpp"
 #include "motion/explicit/transfer.hpp"
 #include "points/free_points.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -30,6 +32,11 @@ struct ExplicitSoil {
     double friction_rise = 0;          ///< of sin phi at a boundless rate of shear; 0: it does not depend on the rate
     double inertial_root = 0;          ///< sqrt(Pa) s: I / I_0 times the root of the pressure, over the rate of shear
 };
+
+/// Share of what the softening of a soil that softens takes, 0 to 1.
+inline double share_lost(const ExplicitSoil& soil, double plastic_strain, double cell_size) {
+    return std::min(band_slip(plastic_strain, cell_size) / soil.softening_slip, 1.0);
+}
 
 // The arrays that these take never overlap, which __restrict tells the compiler, so that the loops are vectorised.
 
