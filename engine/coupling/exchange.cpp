@@ -15,6 +15,9 @@ constexpr int most_iterations = 40;
 constexpr int patience = 12;
 // Of ground that yields, beyond which flow and skeleton are solved for together.
 constexpr int most_plain_iterations = 15;
+// Steps of the two's creep within which they settle soon: the next exchange starts with it, and is longer however bad the forecast was.
+constexpr int32_t soon = 15;
+constexpr double growth_if_soon = 1.5;
 // Disagreement of the first iteration at which the next exchange is as long as this one.
 constexpr double well_expected = 100.0;
 
@@ -31,10 +34,11 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     // Below the length given up last it grows slowly: the next one to be given up costs more than shorter ones do.
     const double most_growth = is_below_given_up ? 1.5 : 4.0;
     // No forecast that errs may keep exchanges short.
-    const double least_growth = is_short ? std::min(2.0, most_growth) : 0.0;
+    double least_growth = is_short ? std::min(2.0, most_growth) : 0.0;
     FlowPath path{state_.flow, state_.watch, {}};
     double first_disagreement = 0, least_disagreement = std::numeric_limits<double>::infinity();
     int least_at = 0;
+    bool settled_soon = false;
     if (flow_) {
         set_flow_forcing(duration);
         expect_skeleton(duration);
@@ -61,11 +65,14 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
         if (!is_found && !is_short && !state_.settles_jointly) return end_without(outcome_);
         // Ground that softens as it slips goes no way that creep at a given strength would: inertia is to show where it comes to.
         if (!is_found && is_short && !lost_strength_.empty()) return Exchange::gave_way;
-        if (!is_found || (yields && (disagreement_ > first_disagreement || iteration == most_plain_iterations))) {
+        if (!is_found || (yields && (state_.settles_jointly_soon || disagreement_ > first_disagreement ||
+                                     iteration == most_plain_iterations))) {
             const Exchange result = settle_jointly(duration, path, is_short, cancelled);
             if (result == Exchange::agreed || is_short) state_.settles_jointly = result == Exchange::agreed;
             if (result != Exchange::agreed) return result;
             first_disagreement = forecast_error_;
+            settled_soon = outcome_.pseudo_steps <= soon;
+            if (settled_soon) least_growth = std::max(least_growth, growth_if_soon);
             break;
         }
         if (disagreement_ < 0.5 * least_disagreement) {
@@ -81,6 +88,7 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     happenings.insert(happenings.end(), path.noticed.begin(), path.noticed.end());
     if (flow_ && moves)
         state_.exchange_step = duration * std::max(growth(first_disagreement, most_growth), least_growth);
+    state_.settles_jointly_soon = settled_soon;
     if (!is_below_given_up) state_.given_up_exchange = 0;
     return Exchange::agreed;
 }
@@ -172,7 +180,7 @@ EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double un
     return outcome;
 }
 
-// The pore volume that the skeleton found, beside the one that the flow took for it; the difference as the pressure that would undo it.
+// The pore volume that the skeleton found, beside the one that the flow took for it; the difference in pressures that would undo it.
 void Simulation::compare_pore_volumes(const FlowState& flow) {
     const SkeletonMotion& skeleton = flow_->skeleton;
     const auto& portions = flow_->network.portions;
@@ -187,21 +195,27 @@ void Simulation::compare_pore_volumes(const FlowState& flow) {
         }
     }
     disagreement_ = forecast_error_ = 0;
-    flow_->evaluate(0.0, flow.pressure);  // for the capacity
     for (size_t i = 0; i < portions.size(); ++i) {
         const double pressure = flow.pressure[static_cast<size_t>(portions[i].node)];
         const double stress = flow_->pore_stress(static_cast<size_t>(portions[i].soil), pressure);
         const double taken = end_volume_[i] + skeleton.softness[i] * (stress - end_stress_[i]);
-        const HydraulicState& state = flow_->state()[i];
-        const double storage =
-            found[i] * (state.capacity / state.saturation + 1.0 / scene_.water.bulk_modulus) + skeleton.softness[i];
-        disagreement_ = std::max(disagreement_, std::abs(found[i] - taken) / (storage * agreement_pressure_));
         const double forecast = forecast_volume_[i] + skeleton.softness[i] * (stress - forecast_stress_[i]);
-        forecast_error_ = std::max(forecast_error_, std::abs(found[i] - forecast) / (storage * agreement_pressure_));
+        disagreement_ = std::max(disagreement_, agreement_pressures(i, pressure, found[i], taken));
+        forecast_error_ = std::max(forecast_error_, agreement_pressures(i, pressure, found[i], forecast));
         correction_[i] = (found[i] - taken) / skeleton.softness[i];
         end_stress_[i] = stress;
         taken_volume_[i] = taken;
     }
+}
+
+// The difference of a portion's pore volumes over the one that the agreement pressure makes good. That is asked over the whole of that
+// pressure: pores that lack a hundredth of a pascal of being full have no room for what their capacity there would hold (random/13202).
+double Simulation::agreement_pressures(size_t portion, double pressure, double found, double taken) const {
+    const HydraulicTable& table = flow_->table(static_cast<size_t>(flow_->network.portions[portion].soil));
+    const double step = found < taken ? agreement_pressure_ : -agreement_pressure_;
+    const double stored =
+        table.at(pressure + step).saturation / table.at(pressure).saturation - 1.0 + step / scene_.water.bulk_modulus;
+    return (taken - found) / (found * stored + flow_->skeleton.softness[portion] * step);
 }
 
 // The next expectation. Plainly it would be what the skeleton found; where that diverges, in undrained ground that yields and is softer than

@@ -189,7 +189,7 @@ void Simulation::Water::answer_pressures(std::span<const double> change) {
 // not, the two found theirs.
 Simulation::Exchange Simulation::settle_jointly(double duration, FlowPath& path, bool is_short,
                                                 const Cancelled& cancelled) {
-    constexpr int32_t most_steps = 200;
+    constexpr int32_t most_steps = 1000;
     constexpr int32_t few_steps = 30;  // few that find a balance take more
     const EquilibriumOutcome alone = outcome_;
     const bool is_lost_alone = alone.status == EquilibriumStatus::no_equilibrium;

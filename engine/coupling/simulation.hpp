@@ -139,6 +139,7 @@ private:
     void expect_skeleton(double duration);
     void expect_skeleton_at(double duration, std::span<const double> volume, std::span<const double> stress);
     void compare_pore_volumes(const FlowState& flow);
+    [[nodiscard]] double agreement_pressures(size_t portion, double pressure, double found, double taken) const;
     void correct_expectation();
     // the two together (joint.cpp)
     class Water;

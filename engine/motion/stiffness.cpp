@@ -84,6 +84,12 @@ void Stiffness::assemble_elastic(const Points& points, const Skeleton& skeleton,
     assemble(points, matrix, [&](size_t p) -> const Matrix4d& { return skeleton.elastic_tangent(points.soil[p]); });
 }
 
+void Stiffness::assemble_softest(const Points& points, const Skeleton& skeleton, SparseMatrix& matrix) const {
+    assemble(points, matrix, [&](size_t p) -> Matrix4d {
+        return skeleton.share_of_softest(points.soil[p]) * skeleton.elastic_tangent(points.soil[p]);
+    });
+}
+
 void Stiffness::assemble_tangent(const Points& points, const Skeleton& skeleton, double viscosity,
                                  SparseMatrix& matrix) const {
     assemble(points, matrix, [&](size_t p) -> Matrix4d {
@@ -130,7 +136,7 @@ void Stiffness::add_quad(const Points& points, int32_t cell, const Moduli& modul
             strain_columns(g[a].data(), dilatation.data() + 2 * a, b.data() + 8 * a, b.data() + 8 * a + 4);
         }
         const Matrix<double, 4, 8> stress = points.volume[first + i] * moduli(first + i) * b;
-        local.noalias() += b.transpose() * stress;
+        local += b.transpose().lazyProduct(stress);
     }
     scatter(local, place_.data() + place_start_[static_cast<size_t>(cell)], value);
 }
