@@ -109,6 +109,7 @@ double Simulation::Water::power() const {
     return sum;
 }
 
+// At the end of the exchange, where the flow was evaluated last.
 bool Simulation::Water::linearise() {
     if (!all_.joint_solver_) {
         all_.storage_matrix_ = all_.joint_matrix_ = all_.flow_->make_matrix();

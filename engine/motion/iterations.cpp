@@ -225,19 +225,16 @@ void Equilibrium::find_mechanism(CollapseEvidence& evidence) {
     locate_mechanism(kinematics_, points_, start_, evidence);
 }
 
-/// Largest displacement that the whole loads would give the skeleton if it did not yield, m; with the modulus of its softest soil
-/// throughout, since the stiff ground, where it yields, may leave the loads to the soft.
+/// Largest displacement that the whole loads would give the skeleton if it did not yield, m; times the contrast of its moduli, since
+/// the stiff ground, where it yields, may leave the loads to the soft.
 double Equilibrium::elastic_displacement(EquilibriumOutcome& outcome) {
-    stiffness_.assemble_softest(points_, skeleton_, tangent_.matrix);
-    ++outcome.factorisations;
-    if (!tangent_.solver->factorise(tangent_.matrix)) return std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < direction_.size(); ++i)
         direction_[i] = external_[static_cast<size_t>(equations_.freedom[i])];
-    tangent_.solver->solve(tangent_.matrix, direction_);
+    elastic_.solver->solve(elastic_.matrix, direction_);
     ++outcome.iterations;
     double largest = 0;
     for (const double u : direction_) largest = std::max(largest, std::abs(u));
-    return largest;
+    return largest * skeleton_.stiffness_contrast();
 }
 
 bool Equilibrium::watch(CollapseWatch& watch, std::span<const double> last_direction) const {

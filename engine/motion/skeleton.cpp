@@ -72,7 +72,6 @@ Skeleton::Skeleton(const CellKinematics& kinematics, Points& points, std::vector
     const auto count = static_cast<size_t>(points.count);
     yields_.assign(count, 0);
     for (const CellBlock& block : kinematics.blocks()) {
-        softest_modulus_ = std::min(softest_modulus_, solids_[static_cast<size_t>(block.soil)].young_modulus);
         if (is_elastic(block.soil)) continue;
         strength_.resize(count);
         tangent_.resize(16 * count);
@@ -224,6 +223,17 @@ double Skeleton::least_factor_of_safety() const {
         }
     }
     return least;
+}
+
+double Skeleton::stiffness_contrast() const {
+    double softest = std::numeric_limits<double>::infinity();
+    double stiffest = 0;
+    for (const CellBlock& block : kinematics_.blocks()) {
+        const double modulus = solids_[static_cast<size_t>(block.soil)].young_modulus;
+        softest = std::min(softest, modulus);
+        stiffest = std::max(stiffest, modulus);
+    }
+    return stiffest / softest;
 }
 
 }  // namespace talus

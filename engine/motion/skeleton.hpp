@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -61,10 +60,8 @@ public:
     /// Least local factor of safety of the points' present stress; infinite where no soil is mohr_coulomb.
     [[nodiscard]] double least_factor_of_safety() const;
 
-    /// Young's modulus of the softest soil that there is over that of a soil, -.
-    [[nodiscard]] double share_of_softest(int32_t soil) const {
-        return softest_modulus_ / solids_[static_cast<size_t>(soil)].young_modulus;
-    }
+    /// Largest over smallest Young's modulus of the soils that there are.
+    [[nodiscard]] double stiffness_contrast() const;
 
 private:
     struct State {
@@ -84,7 +81,6 @@ private:
     std::vector<MohrCoulomb> strength_;             // one a point
     std::vector<double> tangent_;                   // points x 16, where the point yields
     std::vector<uint8_t> yields_;
-    double softest_modulus_ = std::numeric_limits<double>::infinity();  // Pa, of the soils that there are
     State accepted_;
 };
 

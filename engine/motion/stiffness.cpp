@@ -84,12 +84,6 @@ void Stiffness::assemble_elastic(const Points& points, const Skeleton& skeleton,
     assemble(points, matrix, [&](size_t p) -> const Matrix4d& { return skeleton.elastic_tangent(points.soil[p]); });
 }
 
-void Stiffness::assemble_softest(const Points& points, const Skeleton& skeleton, SparseMatrix& matrix) const {
-    assemble(points, matrix, [&](size_t p) -> Matrix4d {
-        return skeleton.share_of_softest(points.soil[p]) * skeleton.elastic_tangent(points.soil[p]);
-    });
-}
-
 void Stiffness::assemble_tangent(const Points& points, const Skeleton& skeleton, double viscosity,
                                  SparseMatrix& matrix) const {
     assemble(points, matrix, [&](size_t p) -> Matrix4d {

@@ -32,9 +32,6 @@ public:
 
     void assemble_elastic(const Points& points, const Skeleton& skeleton, SparseMatrix& matrix) const;
 
-    /// The elastic stiffness of ground that is nowhere stiffer than its softest soil.
-    void assemble_softest(const Points& points, const Skeleton& skeleton, SparseMatrix& matrix) const;
-
     /// The consistent tangent, and the elastic stiffness times `viscosity` added to it.
     void assemble_tangent(const Points& points, const Skeleton& skeleton, double viscosity, SparseMatrix& matrix) const;
 
