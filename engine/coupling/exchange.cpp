@@ -15,7 +15,8 @@ constexpr int most_iterations = 40;
 constexpr int patience = 12;
 // Of ground that yields, beyond which flow and skeleton are solved for together.
 constexpr int most_plain_iterations = 15;
-// Steps of the two's creep within which they settle soon: the next exchange starts with it, and is longer however bad the forecast was.
+// Steps of creep within which the two settle soon (of the last creep, where the skeleton settled beside the water): the next exchange starts
+// with it, and is longer however bad the forecast was.
 constexpr int32_t soon = 15;
 constexpr double growth_if_soon = 1.5;
 // Disagreement of the first iteration at which the next exchange is as long as this one.
@@ -33,8 +34,6 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     const bool is_below_given_up = duration < state_.given_up_exchange;
     // Below the length given up last it grows slowly: the next one to be given up costs more than shorter ones do.
     const double most_growth = is_below_given_up ? 1.5 : 4.0;
-    // No forecast that errs may keep exchanges short.
-    double least_growth = is_short ? std::min(2.0, most_growth) : 0.0;
     FlowPath path{state_.flow, state_.watch, {}};
     double first_disagreement = 0, least_disagreement = std::numeric_limits<double>::infinity();
     int least_at = 0;
@@ -72,7 +71,6 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
             if (result != Exchange::agreed) return result;
             first_disagreement = forecast_error_;
             settled_soon = outcome_.pseudo_steps <= soon;
-            if (settled_soon) least_growth = std::max(least_growth, growth_if_soon);
             break;
         }
         if (disagreement_ < 0.5 * least_disagreement) {
@@ -86,6 +84,8 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     accept(duration, path.flow);
     state_.watch = path.watch;
     happenings.insert(happenings.end(), path.noticed.begin(), path.noticed.end());
+    // No forecast that errs may keep exchanges short.
+    const double least_growth = is_short ? std::min(2.0, most_growth) : settled_soon ? growth_if_soon : 0.0;
     if (flow_ && moves)
         state_.exchange_step = duration * std::max(growth(first_disagreement, most_growth), least_growth);
     state_.settles_jointly_soon = settled_soon;

@@ -44,7 +44,7 @@ struct GroundState {
     double exchange_step = 0;              ///< s, what the next exchange between flow and motion would take; 0: unknown
     double given_up_exchange = 0;          ///< s, length of the one given up last, until one as long is agreed on
     bool settles_jointly = false;          ///< flow and skeleton, where the skeleton alone found no equilibrium last
-    bool settles_jointly_soon = false;     ///< the two, in the last exchange, within few steps
+    bool settles_jointly_soon = false;     ///< the two, in the last exchange agreed on, within few steps
     bool equilibrium_lost = false;         ///< the skeleton stands as it was when it failed
     bool rests = false;                    ///< it failed, moved and came to rest
     bool lies_still = false;               ///< and found no way back to equilibrium
