@@ -172,10 +172,10 @@ void Simulation::expect_skeleton_at(double duration, std::span<const double> vol
     }
 }
 
-EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double until) {
+EquilibriumOutcome Simulation::find_equilibrium(const FlowState& flow, double until, int32_t most_creep_steps) {
     const Stopwatch stopwatch(counts.seconds_motion);
     set_loads(flow, until);
-    const EquilibriumOutcome outcome = equilibrium_->solve(loads());
+    const EquilibriumOutcome outcome = equilibrium_->solve(loads(), Equilibrium::tolerance, most_creep_steps);
     counts.motion_iterations += outcome.iterations;
     return outcome;
 }
@@ -238,6 +238,7 @@ void Simulation::accept(double duration, const FlowState& flow) {
         state_.pore_volume = found_volume_;
         state_.flow_pore_volume = taken_volume_;
     }
+    state_.largest_speed = outcome_.largest_increment / duration;
     equilibrium_->accept();
     soften();
     state_.node_position = mesh_.position;

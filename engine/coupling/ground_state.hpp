@@ -41,6 +41,7 @@ struct GroundState {
     std::vector<double> flow_pore_volume;  ///< per portion, m3: what the flow last took for it
     std::vector<double> pore_volume_rate;  ///< per portion, m3/s, over the last exchange: the next one's prediction
     std::vector<double> pore_stress_rate;  ///< per portion, Pa/s, likewise
+    double largest_speed = 0;              ///< m/s, of a node, over the last exchange
     double exchange_step = 0;              ///< s, what the next exchange between flow and motion would take; 0: unknown
     double given_up_exchange = 0;          ///< s, length of the one given up last, until one as long is agreed on
     bool settles_jointly = false;          ///< flow and skeleton, where the skeleton alone found no equilibrium last

@@ -198,20 +198,22 @@ Simulation::Exchange Simulation::settle_jointly(double duration, FlowPath& path,
     {
         const Stopwatch stopwatch(counts.seconds_motion);
         Water water(*this, duration, path, cancelled);
-        outcome_ = equilibrium_->solve_with(water, is_short && !is_lost_alone ? most_steps : few_steps);
+        outcome_ = equilibrium_->solve_with(water, state_.largest_speed * duration,
+                                            is_short && !is_lost_alone ? most_steps : few_steps);
         if (water.is_cancelled()) return Exchange::cancelled;
     }
     counts.seconds_motion -= counts.seconds_flow - flow_before;
     counts.motion_iterations += outcome_.iterations;
-    if (outcome_.status == EquilibriumStatus::not_converged && disagreement_ <= 1.0) settle_beside(path.flow, duration);
+    if (outcome_.status == EquilibriumStatus::not_converged && disagreement_ <= 1.0)
+        settle_beside(path.flow, duration, is_short ? Equilibrium::usual_creep_steps : few_steps);
     if (outcome_.status == EquilibriumStatus::converged) return Exchange::agreed;
     if (outcome_.status == EquilibriumStatus::not_converged && is_lost_alone) outcome_ = alone;
     return end_without(outcome_);
 }
 
 // The skeleton beside water that has come to agree with it: what unbalanced force is left may be less than the flow's own error.
-void Simulation::settle_beside(const FlowState& flow, double duration) {
-    outcome_ = find_equilibrium(flow, state_.time + duration);
+void Simulation::settle_beside(const FlowState& flow, double duration, int32_t most_creep_steps) {
+    outcome_ = find_equilibrium(flow, state_.time + duration, most_creep_steps);
     if (outcome_.status != EquilibriumStatus::converged) return;
     compare_pore_volumes(flow);
     if (disagreement_ > 1.0) outcome_.status = EquilibriumStatus::not_converged;

@@ -144,12 +144,13 @@ private:
     // the two together (joint.cpp)
     class Water;
     Exchange settle_jointly(double duration, FlowPath& path, bool is_short, const Cancelled& cancelled);
-    void settle_beside(const FlowState& flow, double duration);
+    void settle_beside(const FlowState& flow, double duration, int32_t most_creep_steps);
     [[nodiscard]] Loads loads() const {
         return {point_density_, point_pore_stress_, point_strength_, node_force_, prescribed_displacement_};
     }
     void accept(double duration, const FlowState& flow);
-    EquilibriumOutcome find_equilibrium(const FlowState& flow, double until);
+    EquilibriumOutcome find_equilibrium(const FlowState& flow, double until,
+                                        int32_t most_creep_steps = Equilibrium::usual_creep_steps);
     // what passes between them (loads.cpp)
     void set_loads(const FlowState& flow, double until);
     void soften();

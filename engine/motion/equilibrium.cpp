@@ -51,19 +51,19 @@ EquilibriumOutcome Equilibrium::solve(const Loads& loads, double wanted, int32_t
             predict(worth_predicting, outcome);
             unbalance();
         }
-        if (!accelerate(outcome)) creep(most_creep_steps, outcome);
+        if (!accelerate(outcome)) creep(largest_first_viscosity, most_creep_steps, outcome);
     }
     finish(outcome);
     return outcome;
 }
 
-EquilibriumOutcome Equilibrium::solve_with(Companion& companion, int32_t most_creep_steps) {
+EquilibriumOutcome Equilibrium::solve_with(Companion& companion, double expected, int32_t most_creep_steps) {
     EquilibriumOutcome outcome;
     reject();
     is_at_start_ = false;
     wanted_ = tolerance;
     if (!follow(&companion, 0)) return outcome;
-    creep(most_creep_steps, outcome, &companion);
+    creep(viscosity_for(expected, companion, outcome), most_creep_steps, outcome, &companion);
     finish(outcome);
     if (outcome.status == EquilibriumStatus::converged && !companion.agrees())
         outcome.status = EquilibriumStatus::not_converged;

@@ -42,6 +42,8 @@ public:
     /// The unbalanced force that is let stand, over the norm of the loads: the larger of the external forces (weight, pore
     /// stress, boundary forces) and the reactions; more only within what displacements are rounded by.
     static constexpr double tolerance = 1e-7;
+    static constexpr int32_t usual_creep_steps = 200;
+    static constexpr double largest_first_viscosity = 0.01;  ///< of creep, over the elastic stiffness
 
     /// `solids`: one a soil. `prescribed`: nodes x dimension, non-zero where the displacement is given. `gravity` in m/s2,
     /// downwards. Mesh and points are the caller's; their present state is the accepted one, without displacement.
@@ -54,10 +56,12 @@ public:
     /// where that was neither accepted nor rejected: loads that hardly differ are then soon balanced, and as far as they differ, so that
     /// the answer follows them however little that is. `wanted`: the unbalanced force aimed at, where round-off lets it be had. After so
     /// many steps of creep it is given up.
-    EquilibriumOutcome solve(const Loads& loads, double wanted = tolerance, int32_t most_creep_steps = 200);
+    EquilibriumOutcome solve(const Loads& loads, double wanted = tolerance,
+                             int32_t most_creep_steps = usual_creep_steps);
 
     /// Creeps from the accepted state, without increment, to where the skeleton is in equilibrium with what loads it and that agrees.
-    EquilibriumOutcome solve_with(Companion& companion, int32_t most_creep_steps);
+    /// `expected`: how far some node may go, m, for the first step's length; 0: unknown.
+    EquilibriumOutcome solve_with(Companion& companion, double expected, int32_t most_creep_steps);
 
     /// As solve() for a skeleton that does not yield: gravity turned on elastically.
     EquilibriumOutcome solve_elastically(const Loads& loads);
@@ -115,7 +119,8 @@ private:
     [[nodiscard]] bool is_within_rounding() const;
     void predict(double wanted, EquilibriumOutcome& outcome);
     bool accelerate(EquilibriumOutcome& outcome);
-    bool creep(int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion = nullptr);
+    bool creep(double viscosity, int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion = nullptr);
+    double viscosity_for(double expected, Companion& companion, EquilibriumOutcome& outcome);
     std::optional<double> follow_direction(Companion* companion);
     void guide(Companion& companion);
     bool follow(Companion* companion, double length);

@@ -118,14 +118,12 @@ bool Equilibrium::accelerate(EquilibriumOutcome& outcome) {
 /// (tangent + viscosity * elastic stiffness) step = unbalanced force. The viscosity falls with the unbalanced force, which ends in
 /// Newton's method where a balance exists (pseudo-transient continuation; Kelley & Keyes, SIAM J. Numer. Anal. 35, 1998), and in
 /// the steady motion of a mechanism where there is none. With a companion it is both that creep. True: arrived.
-bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion) {
+bool Equilibrium::creep(double viscosity, int32_t most_steps, EquilibriumOutcome& outcome, Companion* companion) {
     const auto agrees = [companion] { return companion == nullptr || companion->agrees(); };
-    constexpr double first_viscosity = 0.01;
     constexpr double largest_viscosity =
         1e6;  // water that softens ground by its pressure may be 1e5 times as stiff as it
     constexpr double smallest_ratio = 0.1, steady_ratio = 0.8;
     CollapseWatch collapse(elastic_displacement(outcome));
-    double viscosity = first_viscosity;
     double unbalanced = norm(residual_);
     std::fill(last_direction_.begin(), last_direction_.end(), 0.0);
     for (int32_t k = 0; k < most_steps && viscosity < largest_viscosity; ++k) {
@@ -157,6 +155,18 @@ bool Equilibrium::creep(int32_t most_steps, EquilibriumOutcome& outcome, Compani
         last_direction_ = direction_;
     }
     return (relative_residual() <= tolerance || is_within_rounding()) && agrees();
+}
+
+/// With which the first step goes half as far as is expected. With the largest, ground that keeps slipping spends most of its steps on
+/// getting under way.
+double Equilibrium::viscosity_for(double expected, Companion& companion, EquilibriumOutcome& outcome) {
+    constexpr double least = 1e-4, share = 0.5;
+    if (expected <= 0 || !factorise_tangent(largest_first_viscosity, outcome)) return largest_first_viscosity;
+    solve_for_direction(tangent_, outcome);
+    guide(companion);
+    double length = 0;
+    for (const double u : direction_) length = std::max(length, std::abs(u));
+    return largest_first_viscosity * std::clamp(length / (share * expected), least, 1.0);
 }
 
 /// Goes along the direction, which is cut to the part gone, until the unbalanced force does hardly less work on it than at the start
