@@ -42,7 +42,7 @@ public:
     /// The unbalanced force that is let stand, over the norm of the loads: the larger of the external forces (weight, pore
     /// stress, boundary forces) and the reactions; more only within what displacements are rounded by.
     static constexpr double tolerance = 1e-7;
-    static constexpr int32_t usual_creep_steps = 200;
+    static constexpr int32_t usual_creep_steps = 200;        ///< after which it is given up
     static constexpr double largest_first_viscosity = 0.01;  ///< of creep, over the elastic stiffness
 
     /// `solids`: one a soil. `prescribed`: nodes x dimension, non-zero where the displacement is given. `gravity` in m/s2,

@@ -69,7 +69,8 @@ void check_wall(const Check& check, const Boundary& boundary, const Ground& grou
     const std::vector<Place>& base = ground.section.base;
     const bool level =
         std::all_of(base.begin(), base.end(), [&](const Place& place) { return place[1] == base.front()[1]; });
-    motion.require(level, "= " + name(boundary.motion) + ": on a base that is not level" + dynamic);
+    motion.require(level, "= " + name(boundary.motion) + ": on a base that is not level" + dynamic +
+                              "; make the rock below a layer of its own, on a level base");
 }
 
 void check_motion(const Check& check, const Boundary& boundary, const Scene& scene) {
