@@ -23,6 +23,12 @@ double dot(std::span<const double> a, std::span<const double> b) {
 
 double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
 
+double largest(std::span<const double> a) {
+    double value = 0;
+    for (const double x : a) value = std::max(value, std::abs(x));
+    return value;
+}
+
 /// A part of a step and what is left there of the work that it began with.
 struct Reached {
     double length, left;
@@ -164,9 +170,7 @@ double Equilibrium::viscosity_for(double expected, Companion& companion, Equilib
     if (expected <= 0 || !factorise_tangent(largest_first_viscosity, outcome)) return largest_first_viscosity;
     solve_for_direction(tangent_, outcome);
     guide(companion);
-    double length = 0;
-    for (const double u : direction_) length = std::max(length, std::abs(u));
-    return largest_first_viscosity * std::clamp(length / (share * expected), least, 1.0);
+    return largest_first_viscosity * std::clamp(largest(direction_) / (share * expected), least, 1.0);
 }
 
 /// Goes along the direction, which is cut to the part gone, until the unbalanced force does hardly less work on it than at the start
@@ -242,9 +246,7 @@ double Equilibrium::elastic_displacement(EquilibriumOutcome& outcome) {
         direction_[i] = external_[static_cast<size_t>(equations_.freedom[i])];
     elastic_.solver->solve(elastic_.matrix, direction_);
     ++outcome.iterations;
-    double largest = 0;
-    for (const double u : direction_) largest = std::max(largest, std::abs(u));
-    return largest * skeleton_.stiffness_contrast();
+    return largest(direction_) * skeleton_.stiffness_contrast();
 }
 
 bool Equilibrium::watch(CollapseWatch& watch, std::span<const double> last_direction) const {
