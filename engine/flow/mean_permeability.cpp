@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -79,27 +80,44 @@ public:
         const MeanPermeability mean = integral_mean(table_, upper_, lower);
         return mean.value + head(lower) * mean.slope_upper;
     }
-    /// Whether the flow falls as the lower pressure rises.
-    [[nodiscard]] bool is_monotone(const LinkEnd& lower) const {
+    /// How much it falls as the lower pressure rises.
+    [[nodiscard]] double descent(const LinkEnd& lower) const {
         const MeanPermeability mean = integral_mean(table_, upper_, lower);
-        return mean.value >= head(lower) * mean.slope_lower + share_ * lower.state.permeability;
+        return mean.value - head(lower) * mean.slope_lower - share_ * lower.state.permeability;
     }
-    [[nodiscard]] double head(const LinkEnd& lower) const { return upper_.pressure + fall_ - lower.pressure; }
 
 private:
+    [[nodiscard]] double head(const LinkEnd& lower) const { return upper_.pressure + fall_ - lower.pressure; }
+
     const HydraulicTable& table_;
     const LinkEnd& upper_;
     double fall_, share_;
 };
 
-// The lower pressure of the extreme flow, between two places on whose first the flow is monotone and on whose second it is not.
-double turning_pressure(const Downflow& downflow, double monotone, double turned) {
-    constexpr int halvings = 40;
-    for (int i = 0; i < halvings; ++i) {
-        const double middle = 0.5 * (monotone + turned);
-        (downflow.is_monotone(downflow.at(middle)) ? monotone : turned) = middle;
+struct Sample {
+    LinkEnd lower;
+    double descent;
+};
+
+// Where the flow turns between two places, falling at the first and rising at the second: by false position, and halved where that leaves more
+// than half. What the flow there misses of the extreme one is at most its slope times what is left.
+LinkEnd turning_end(const Downflow& downflow, Sample falling, Sample rising) {
+    constexpr int most_cuts = 80;
+    constexpr double enough = 1e-14;  // of the flow
+    double was_apart = std::numeric_limits<double>::infinity();
+    LinkEnd end{};
+    for (int cut = 0; cut < most_cuts; ++cut) {
+        const double apart = rising.lower.pressure - falling.lower.pressure;
+        const double share =
+            std::abs(apart) > 0.5 * was_apart ? 0.5 : falling.descent / (falling.descent - rising.descent);
+        was_apart = std::abs(apart);
+        const double pressure = falling.lower.pressure + share * apart;
+        end = downflow.at(pressure);
+        const double descent = downflow.descent(end);
+        if (std::abs(descent * apart) <= enough * std::abs(downflow.flow(end))) break;
+        (descent >= 0 ? falling : rising) = {end, descent};
     }
-    return 0.5 * (monotone + turned);
+    return end;
 }
 
 }  // namespace
@@ -114,51 +132,55 @@ MeanPermeability mean_permeability(const HydraulicTable& table, const LinkEnd& u
     // Evenly apart in ln(suction), where the curves are straightest, and on the chord, with its ends.
     constexpr int intervals = 8;
     constexpr int chord_intervals = 4;
-    std::array<double, intervals + chord_intervals + 2> place{};
+    std::array<LinkEnd, intervals + chord_intervals + 2> place{};
     size_t places = 0;
     const auto [driest, wettest] = std::minmax(upper.pressure, lower.pressure);
-    const auto add = [&, least = driest, most = wettest](double pressure) {
-        if (least < pressure && pressure < most) place[places++] = pressure;
+    const auto add = [&, least = driest, most = wettest](double pressure, double row) {
+        if (least < pressure && pressure < most) place[places++] = {pressure, table.at(pressure, row)};
     };
     const double chord = table.chord();
-    const double from = std::log(std::max(-upper.pressure, chord));
-    const double to = std::log(std::max(-lower.pressure, chord));
-    place[places++] = upper.pressure;
+    place[places++] = upper;
     if (rise < 0)
-        for (int i = 0; i <= chord_intervals; ++i) add(-chord * i / chord_intervals);
-    for (int i = 1; i < intervals; ++i) add(-std::exp(from + (to - from) * i / intervals));
+        for (int i = 0; i <= chord_intervals; ++i) add(-chord * i / chord_intervals, 0.0);
+    const double rows_apart = (lower.state.row - upper.state.row) / intervals;
+    const double ratio = std::exp(rows_apart * table_spacing);
+    double pressure = std::min(upper.pressure, -chord);
+    for (int i = 1; i < intervals; ++i) {
+        pressure *= ratio;
+        add(pressure, upper.state.row + i * rows_apart);
+    }
     if (rise > 0) {
         // From drier soil the flow is a rational function on the chord, which turns about its inflection if it does.
-        add(-chord);
+        add(-chord, 0.0);
         const double slope = table.at(-chord).permeability_slope;
         const double offset = upper.pressure * (1.0 + 0.5 * slope * upper.pressure) - upper.state.potential;
         const double inflection = upper.pressure + std::cbrt(2.0 * offset * fall / slope);
-        if (upper.pressure < -chord && inflection > -chord && inflection < 0) add(inflection);
-        add(0.0);
+        if (upper.pressure < -chord && inflection > -chord && inflection < 0) add(inflection, 0.0);
+        add(0.0, 0.0);
     }
-    place[places++] = lower.pressure;
+    place[places++] = lower;
 
     const double share = rise < 0 ? least_share : 0.0;
     const Downflow downflow(table, upper, fall, share);
     const double sign = rise < 0 ? 1.0 : -1.0;  // drier below: the largest flow; wetter below: the least
     // Candidates are the upper end, turns on the way and the lower end.
-    bool was_monotone = downflow.is_monotone(upper);
     double flow =
         fall * upper.state.permeability + share * upper.state.potential;  // what falls from the upper end alone
     double slope_upper = fall * upper.state.permeability_slope + share * upper.state.permeability;
+    Sample before{upper, downflow.descent(upper)};
     for (size_t i = 1; i < places; ++i) {
-        const bool is_monotone = downflow.is_monotone(i + 1 < places ? downflow.at(place[i]) : lower);
-        if (was_monotone && !is_monotone) {
-            const LinkEnd turn = downflow.at(turning_pressure(downflow, place[i - 1], place[i]));
+        const Sample here{place[i], downflow.descent(place[i])};
+        if (before.descent >= 0 && here.descent < 0) {
+            const LinkEnd turn = turning_end(downflow, before, here);
             const double turn_flow = downflow.flow(turn);
             if (sign * turn_flow > sign * flow) {
                 flow = turn_flow;
                 slope_upper = downflow.slope(turn);
             }
         }
-        was_monotone = is_monotone;
+        before = here;
     }
-    if (was_monotone && sign * downflow.flow(lower) >= sign * flow) return central;
+    if (before.descent >= 0 && sign * downflow.flow(lower) >= sign * flow) return central;
     const double value = (flow - share * lower.state.potential) / head;
     return {value, (slope_upper - value) / head, (value - share * lower.state.permeability) / head};
 }

@@ -23,6 +23,8 @@ struct HydraulicState {
     double permeability;        ///< k_r, -
     double permeability_slope;  ///< dk_r/dp, 1/Pa
     double potential;           ///< Kirchhoff potential, integral of k_r dp from saturation, Pa
+    double
+        row;  ///< where the pressure lies among the table's rows, ln(suction / chord) over their spacing; 0 if wetter
 };
 
 class HydraulicTable {
@@ -31,6 +33,8 @@ public:
 
     /// At saturation itself (p = 0) the slopes are the unsaturated ones.
     [[nodiscard]] HydraulicState at(double pressure) const;
+    /// The same where it is known among the rows: saves the logarithm.
+    [[nodiscard]] HydraulicState at(double pressure, double row) const;
 
     /// The pressure below 0 with this saturation, between residual and maximum saturation (both excluded), Pa.
     [[nodiscard]] double pressure_of_saturation(double saturation) const;
@@ -71,25 +75,33 @@ inline constexpr int table_rows = 200 * 13 + 1;                 // 13 decades
 
 inline HydraulicState HydraulicTable::at(double pressure) const {
     if (pressure >= -chord_) return wet(pressure);
-    const double place = std::log(-pressure / chord_) / table_spacing;
-    const auto row = static_cast<size_t>(std::min(place, static_cast<double>(table_rows - 2)));
-    const double t = std::min(place - static_cast<double>(row), 1.0);
-    const Row& a = rows_[row];
-    const Row& b = rows_[row + 1];
-    const double per_pressure = 1.0 / (pressure * table_spacing);  // d(place)/dp
+    return at(pressure, std::log(-pressure / chord_) / table_spacing);
+}
+
+inline HydraulicState HydraulicTable::at(double pressure, double row) const {
+    if (pressure >= -chord_) return wet(pressure);
+    const auto whole = static_cast<size_t>(std::min(row, static_cast<double>(table_rows - 2)));
+    const double t = std::min(row - static_cast<double>(whole), 1.0);
+    const Row& a = rows_[whole];
+    const Row& b = rows_[whole + 1];
+    const double per_pressure = 1.0 / (pressure * table_spacing);  // d(row)/dp
     const Hermite s = hermite(a.saturation, b.saturation, a.saturation_slope, b.saturation_slope, t);
     const Hermite k = hermite(a.permeability, b.permeability, a.permeability_slope, b.permeability_slope, t);
     const Hermite phi = hermite(a.potential, b.potential, a.potential_slope, b.potential_slope, t);
-    return {s.value, s.slope * per_pressure, k.value, k.slope * per_pressure, phi.value};
+    return {s.value, s.slope * per_pressure, k.value, k.slope * per_pressure, phi.value, row};
 }
 
 inline HydraulicState HydraulicTable::wet(double pressure) const {
-    if (pressure > 0) return {maximum_, 0.0, 1.0, 0.0, pressure};
+    if (pressure > 0) return {maximum_, 0.0, 1.0, 0.0, pressure, 0.0};
     const Row& end = rows_.front();
     const double capacity = (maximum_ - end.saturation) / chord_;
     const double slope = (1.0 - end.permeability) / chord_;
-    return {maximum_ + capacity * pressure, capacity, 1.0 + slope * pressure, slope,
-            pressure * (1.0 + 0.5 * slope * pressure)};
+    return {maximum_ + capacity * pressure,
+            capacity,
+            1.0 + slope * pressure,
+            slope,
+            pressure * (1.0 + 0.5 * slope * pressure),
+            0.0};
 }
 
 }  // namespace talus
