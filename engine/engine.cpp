@@ -415,12 +415,14 @@ uint64_t Engine::hash() const {
         }
     };
     const GroundState& ground = state_->simulation->state();
-    mix({ground.time, ground.exchange_step, ground.flow.substep});
+    mix({ground.time, ground.exchange_step, ground.given_up_exchange, ground.flow.substep});
+    mix({double(ground.settles_jointly), double(ground.goes_on_jointly), double(ground.settles_jointly_soon)});
     for (const auto* field :
          {&ground.node_position, &ground.displacement, &ground.velocity, &ground.flow.pressure, &ground.flow.stored,
           &ground.pore_volume, &ground.flow_pore_volume, &ground.pore_volume_rate, &ground.pore_stress_rate,
-          &ground.points.position, &ground.points.volume, &ground.points.displacement, &ground.points.skeleton_stress,
-          &ground.points.strain, &ground.points.plastic_strain, &ground.points.mobilised_strength})
+          &ground.displacement_rate, &ground.points.position, &ground.points.volume, &ground.points.displacement,
+          &ground.points.skeleton_stress, &ground.points.strain, &ground.points.plastic_strain,
+          &ground.points.mobilised_strength})
         mix(*field);
     mix({ground.flow.totals.begin(), ground.flow.totals.end()});
     if (state_->simulation->dynamic() == nullptr) return hash;

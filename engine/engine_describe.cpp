@@ -60,11 +60,12 @@ int64_t bytes_held(const Simulation& simulation) {
     const Points& points = ground.points;
     size_t values = simulation.mesh().position.size();
     for (const auto* field :
-         {&ground.node_position,    &ground.displacement, &ground.velocity,         &ground.flow.pressure,
-          &ground.flow.stored,      &ground.pore_volume,  &ground.flow_pore_volume, &ground.pore_volume_rate,
-          &ground.pore_stress_rate, &points.position,     &points.volume,           &points.displacement,
-          &points.skeleton_stress,  &points.strain,       &points.plastic_strain,   &points.mobilised_strength,
-          &points.pressure,         &points.saturation,   &points.porosity,         &points.darcy_flux})
+         {&ground.node_position,      &ground.displacement,      &ground.velocity,         &ground.flow.pressure,
+          &ground.flow.stored,        &ground.pore_volume,       &ground.flow_pore_volume, &ground.pore_volume_rate,
+          &ground.pore_stress_rate,   &ground.displacement_rate, &points.position,         &points.volume,
+          &points.displacement,       &points.skeleton_stress,   &points.strain,           &points.plastic_strain,
+          &points.mobilised_strength, &points.pressure,          &points.saturation,       &points.porosity,
+          &points.darcy_flux})
         values += field->size();
     size_t bytes = values * sizeof(double);
     if (simulation.dynamic() != nullptr) {

@@ -35,14 +35,34 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
     // Below the length given up last it grows slowly: the next one to be given up costs more than shorter ones do.
     const double most_growth = is_below_given_up ? 1.5 : 4.0;
     FlowPath path{state_.flow, state_.watch, {}};
-    double first_disagreement = 0, least_disagreement = std::numeric_limits<double>::infinity();
-    int least_at = 0;
-    bool settled_soon = false;
-    if (flow_) {
-        set_flow_forcing(duration);
-        expect_skeleton(duration);
-    }
+    if (flow_) set_flow_forcing(duration);
     ++counts.exchanges;
+    Settled settled;
+    Exchange result = Exchange::disagreed;
+    if (moves && state_.goes_on_jointly) result = go_on_jointly(duration, path, cancelled, settled);
+    if (result == Exchange::disagreed) result = settle_in_turn(duration, path, is_short, cancelled, settled);
+    if (result != Exchange::agreed) return result;
+    state_.goes_on_jointly = settled.jointly && is_as_expected(duration);
+    accept(duration, path.flow);
+    state_.watch = path.watch;
+    happenings.insert(happenings.end(), path.noticed.begin(), path.noticed.end());
+    // No forecast that errs may keep exchanges short.
+    const bool is_soon = settled.jointly && outcome_.pseudo_steps <= soon;
+    const double least_growth = is_short ? std::min(2.0, most_growth) : is_soon ? growth_if_soon : 0.0;
+    if (flow_ && moves)
+        state_.exchange_step = duration * std::max(growth(settled.first_disagreement, most_growth), least_growth);
+    state_.settles_jointly_soon = is_soon;
+    if (!is_below_given_up) state_.given_up_exchange = 0;
+    return Exchange::agreed;
+}
+
+// Flow and skeleton by turns, the two together where that does not settle.
+Simulation::Exchange Simulation::settle_in_turn(double duration, FlowPath& path, bool is_short,
+                                                const Cancelled& cancelled, Settled& settled) {
+    const bool moves = skeleton_moves();
+    double least_disagreement = std::numeric_limits<double>::infinity();
+    int least_at = 0;
+    if (flow_) expect_skeleton(duration);
     for (int iteration = 0;; ++iteration) {
         ++counts.exchange_iterations;
         if (flow_) {
@@ -50,28 +70,26 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
             if (result == AdvanceResult::cancelled) return Exchange::cancelled;
             if (result == AdvanceResult::failed) return Exchange::flow_stopped;
         }
-        if (!moves) break;
+        if (!moves) return Exchange::agreed;
         outcome_ = find_equilibrium(path.flow, state_.time + duration);
         if (cancelled(duration)) return Exchange::cancelled;
         const bool is_found = outcome_.status == EquilibriumStatus::converged;
-        if (!flow_ && !is_found) return end_without(outcome_);
-        if (!flow_) break;
+        if (!flow_ && !is_found) return end_of(outcome_);
+        if (!flow_) return Exchange::agreed;
         if (is_found) compare_pore_volumes(path.flow);
-        if (iteration == 0) first_disagreement = disagreement_;
-        if (is_found && disagreement_ <= 1.0) break;
+        if (iteration == 0) settled.first_disagreement = disagreement_;
+        if (is_found && disagreement_ <= 1.0) return Exchange::agreed;
         // Under pressures that are not those of the two, ground that yields may find no equilibrium, or one that is farther off.
         const bool yields = outcome_.yielding > 0;
-        if (!is_found && !is_short && !state_.settles_jointly) return end_without(outcome_);
+        if (!is_found && !is_short && !state_.settles_jointly) return end_of(outcome_);
         // Ground that softens as it slips goes no way that creep at a given strength would: inertia is to show where it comes to.
         if (!is_found && is_short && !lost_strength_.empty()) return Exchange::gave_way;
-        if (!is_found || (yields && (state_.settles_jointly_soon || disagreement_ > first_disagreement ||
+        if (!is_found || (yields && (state_.settles_jointly_soon || disagreement_ > settled.first_disagreement ||
                                      iteration == most_plain_iterations))) {
             const Exchange result = settle_jointly(duration, path, is_short, cancelled);
             if (result == Exchange::agreed || is_short) state_.settles_jointly = result == Exchange::agreed;
-            if (result != Exchange::agreed) return result;
-            first_disagreement = forecast_error_;
-            settled_soon = outcome_.pseudo_steps <= soon;
-            break;
+            settled = {forecast_error_, true};
+            return result;
         }
         if (disagreement_ < 0.5 * least_disagreement) {
             least_disagreement = disagreement_;
@@ -81,20 +99,15 @@ Simulation::Exchange Simulation::exchange(double duration, bool is_short, const 
         correct_expectation();
         expect_skeleton_at(duration, end_volume_, end_stress_);
     }
-    accept(duration, path.flow);
-    state_.watch = path.watch;
-    happenings.insert(happenings.end(), path.noticed.begin(), path.noticed.end());
-    // No forecast that errs may keep exchanges short.
-    const double least_growth = is_short ? std::min(2.0, most_growth) : settled_soon ? growth_if_soon : 0.0;
-    if (flow_ && moves)
-        state_.exchange_step = duration * std::max(growth(first_disagreement, most_growth), least_growth);
-    state_.settles_jointly_soon = settled_soon;
-    if (!is_below_given_up) state_.given_up_exchange = 0;
-    return Exchange::agreed;
 }
 
-Simulation::Exchange Simulation::end_without(const EquilibriumOutcome& outcome) {
-    return outcome.status == EquilibriumStatus::no_equilibrium ? Exchange::equilibrium_lost : Exchange::disagreed;
+Simulation::Exchange Simulation::end_of(const EquilibriumOutcome& outcome) {
+    switch (outcome.status) {
+        case EquilibriumStatus::converged: return Exchange::agreed;
+        case EquilibriumStatus::no_equilibrium: return Exchange::equilibrium_lost;
+        case EquilibriumStatus::not_converged: break;
+    }
+    return Exchange::disagreed;
 }
 
 AdvanceResult Simulation::advance_flow(double duration, FlowPath& path, const Cancelled& cancelled) {
@@ -235,10 +248,11 @@ void Simulation::accept(double duration, const FlowState& flow) {
             state_.pore_volume_rate[i] = (found_volume_[i] - state_.pore_volume[i]) / duration;
             state_.pore_stress_rate[i] = (end_stress_[i] - start_stress_[i]) / duration;
         }
+        const std::span<const double> increment = equilibrium_->increment();
+        for (size_t i = 0; i < increment.size(); ++i) state_.displacement_rate[i] = increment[i] / duration;
         state_.pore_volume = found_volume_;
         state_.flow_pore_volume = taken_volume_;
     }
-    state_.largest_speed = outcome_.largest_increment / duration;
     equilibrium_->accept();
     soften();
     state_.node_position = mesh_.position;

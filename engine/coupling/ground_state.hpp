@@ -29,26 +29,27 @@ struct RestWatch {
 };
 
 struct GroundState {
-    double time = 0;                       ///< s
-    std::vector<double> node_position;     ///< nodes x dimension, m
-    std::vector<double> displacement;      ///< nodes x dimension, m; empty: rigid
-    std::vector<double> velocity;          ///< nodes x dimension, m/s, mean over the last step; empty: rigid
-    Points points;                         ///< empty: dynamic
-    FreePoints moving;                     ///< of a dynamic ground, in a state that was saved
-    RestWatch rest_watch;                  ///< likewise
-    FlowState flow;                        ///< empty: dry
-    std::vector<double> pore_volume;       ///< per portion, m3: what the ground has
-    std::vector<double> flow_pore_volume;  ///< per portion, m3: what the flow last took for it
-    std::vector<double> pore_volume_rate;  ///< per portion, m3/s, over the last exchange: the next one's prediction
-    std::vector<double> pore_stress_rate;  ///< per portion, Pa/s, likewise
-    double largest_speed = 0;              ///< m/s, of a node, over the last exchange
-    double exchange_step = 0;              ///< s, what the next exchange between flow and motion would take; 0: unknown
-    double given_up_exchange = 0;          ///< s, length of the one given up last, until one as long is agreed on
-    bool settles_jointly = false;          ///< flow and skeleton, where the skeleton alone found no equilibrium last
-    bool settles_jointly_soon = false;     ///< the two, in the last exchange agreed on, within few steps
-    bool equilibrium_lost = false;         ///< the skeleton stands as it was when it failed
-    bool rests = false;                    ///< it failed, moved and came to rest
-    bool lies_still = false;               ///< and found no way back to equilibrium
+    double time = 0;                        ///< s
+    std::vector<double> node_position;      ///< nodes x dimension, m
+    std::vector<double> displacement;       ///< nodes x dimension, m; empty: rigid
+    std::vector<double> velocity;           ///< nodes x dimension, m/s, mean over the last step; empty: rigid
+    Points points;                          ///< empty: dynamic
+    FreePoints moving;                      ///< of a dynamic ground, in a state that was saved
+    RestWatch rest_watch;                   ///< likewise
+    FlowState flow;                         ///< empty: dry
+    std::vector<double> pore_volume;        ///< per portion, m3: what the ground has
+    std::vector<double> flow_pore_volume;   ///< per portion, m3: what the flow last took for it
+    std::vector<double> pore_volume_rate;   ///< per portion, m3/s, over the last exchange: the next one's prediction
+    std::vector<double> pore_stress_rate;   ///< per portion, Pa/s, likewise
+    std::vector<double> displacement_rate;  ///< nodes x dimension, m/s, likewise
+    double exchange_step = 0;           ///< s, what the next exchange between flow and motion would take; 0: unknown
+    double given_up_exchange = 0;       ///< s, length of the one given up last, until one as long is agreed on
+    bool settles_jointly = false;       ///< flow and skeleton, where the skeleton alone found no equilibrium last
+    bool settles_jointly_soon = false;  ///< the two, in the last exchange agreed on, within few steps
+    bool goes_on_jointly = false;   ///< the two, in the last exchange agreed on, near where the one before let expect
+    bool equilibrium_lost = false;  ///< the skeleton stands as it was when it failed
+    bool rests = false;             ///< it failed, moved and came to rest
+    bool lies_still = false;        ///< and found no way back to equilibrium
     FlowWatch watch;
     bool rain_is_out = false;
 };

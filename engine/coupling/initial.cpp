@@ -92,6 +92,7 @@ void Simulation::make_flow() {
     flow_->skeleton.expected_stress.resize(portions);
     flow_->skeleton.projection.resize(flow_->network.neighbours.size());
     state_.flow_pore_volume = state_.pore_volume;
+    state_.displacement_rate.assign(mesh_.position.size(), 0.0);
     for (auto* field : {&state_.pore_volume_rate, &state_.pore_stress_rate, &start_stress_, &end_stress_, &end_volume_,
                         &taken_volume_, &found_volume_, &portion_stress_, &correction_})
         field->assign(portions, 0.0);

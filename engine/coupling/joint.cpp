@@ -4,11 +4,13 @@
 // other, and the pore volumes that it finds in the two have no use for the next pressures. The water is what holds it. So the skeleton
 // creeps in pseudo-time (motion/iterations.cpp) with the water beside it: each step is Newton's for both, the flow by one step of its
 // integrator as long as the exchange, the skeleton by its viscous tangent, the linear equations by GMRES behind the split's own matrix;
-// neither is solved for before the other. Where the two have no balance the creep ends in a steady mechanism, which proves that they have
-// none within that time: the ground fails with its water in it.
+// neither is solved for before the other. Where the two were settled so last, it starts from where that lets expect them, and a balance like
+// the expected is where they went on to. Otherwise it starts from where they lie; where that ends in a steady mechanism, the ground fails with its water in
+// it. No more is shown than that: there may be a balance farther on, as there was for ground that went on (docs/architecture.md).
 #include "coupling/simulation.hpp"
 #include "coupling/stopwatch.hpp"
 #include "linear/gmres.hpp"
+#include "linear/norm.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +21,7 @@ namespace talus {
 namespace {
 
 constexpr double stage_share = 1.0 - std::numbers::sqrt2 / 2;  // of the integrator's step, in each of its two stages
+constexpr int32_t few_steps = 30;                              // few creeps that find a balance take more
 
 std::span<double> span_of(Eigen::VectorXd& values) { return {values.data(), static_cast<size_t>(values.size())}; }
 
@@ -162,16 +165,13 @@ void Simulation::Water::answer_water(Eigen::VectorXd& water) const {
 // from a small change of all its loads (pore stress, strength, weight, ponds), so that it holds for every form of them.
 void Simulation::Water::answer_pressures(std::span<const double> change) {
     constexpr double small = 1e-6;
-    double largest = 0;
+    const double most = largest(change);
     double scale = all_.agreement_pressure_;
-    for (size_t i = 0; i < change.size(); ++i) {
-        largest = std::max(largest, std::abs(change[i]));
-        scale = std::max(scale, std::abs(path_.flow.pressure[i]));
-    }
+    for (const double pressure : path_.flow.pressure) scale = std::max(scale, std::abs(pressure));
     answered_volume_.assign(gap_.size(), 0.0);
     answered_displacement_.assign(all_.mesh_.position.size(), 0.0);
-    if (!(largest > 0)) return;
-    const double length = small * scale / largest;
+    if (!(most > 0)) return;
+    const double length = small * scale / most;
     FlowState moved = path_.flow;
     for (size_t i = 0; i < change.size(); ++i) moved.pressure[i] += length * change[i];
     all_.set_loads(moved, all_.state_.time + duration_);
@@ -186,29 +186,62 @@ void Simulation::Water::answer_pressures(std::span<const double> change) {
     }
 }
 
+std::vector<double> Simulation::expected_increment(double duration) const {
+    std::vector<double> increment = state_.displacement_rate;
+    for (double& u : increment) u *= duration;
+    return increment;
+}
+
+Simulation::Exchange Simulation::creep_jointly(double duration, FlowPath& path, std::span<const double> from,
+                                               int32_t most_steps, const Cancelled& cancelled) {
+    const double flow_before = counts.seconds_flow;
+    {
+        const Stopwatch stopwatch(counts.seconds_motion);
+        Water water(*this, duration, path, cancelled);
+        outcome_ = equilibrium_->solve_with(water, from, largest(expected_increment(duration)), most_steps);
+        if (water.is_cancelled()) return Exchange::cancelled;
+    }
+    counts.seconds_motion -= counts.seconds_flow - flow_before;
+    counts.motion_iterations += outcome_.iterations;
+    return end_of(outcome_);
+}
+
+bool Simulation::is_as_expected(double duration) const {
+    constexpr double alike = 0.5;
+    const std::vector<double> expected = expected_increment(duration);
+    double surprise = 0;
+    for (size_t i = 0; i < expected.size(); ++i)
+        surprise = std::max(surprise, std::abs(equilibrium_->increment()[i] - expected[i]));
+    return surprise <= alike * largest(expected);
+}
+
+// From where the last exchange lets expect the two to be. A balance near that is where they went on to.
+Simulation::Exchange Simulation::go_on_jointly(double duration, FlowPath& path, const Cancelled& cancelled,
+                                               Settled& settled) {
+    const Exchange result = creep_jointly(duration, path, expected_increment(duration), few_steps, cancelled);
+    if (result == Exchange::cancelled) return result;
+    if (result == Exchange::agreed && is_as_expected(duration)) {
+        settled = {forecast_error_, true};
+        return result;
+    }
+    equilibrium_->reject();
+    return Exchange::disagreed;
+}
+
 // It is dear where the exchange is long: first a shorter one is tried, in which the skeleton alone may find its equilibrium, and where it did
 // not, the two found theirs.
 Simulation::Exchange Simulation::settle_jointly(double duration, FlowPath& path, bool is_short,
                                                 const Cancelled& cancelled) {
     constexpr int32_t most_steps = 1000;
-    constexpr int32_t few_steps = 30;  // few that find a balance take more
     const EquilibriumOutcome alone = outcome_;
     const bool is_lost_alone = alone.status == EquilibriumStatus::no_equilibrium;
-    const double flow_before = counts.seconds_flow;
-    {
-        const Stopwatch stopwatch(counts.seconds_motion);
-        Water water(*this, duration, path, cancelled);
-        outcome_ = equilibrium_->solve_with(water, state_.largest_speed * duration,
-                                            is_short && !is_lost_alone ? most_steps : few_steps);
-        if (water.is_cancelled()) return Exchange::cancelled;
-    }
-    counts.seconds_motion -= counts.seconds_flow - flow_before;
-    counts.motion_iterations += outcome_.iterations;
+    if (creep_jointly(duration, path, {}, is_short && !is_lost_alone ? most_steps : few_steps, cancelled) ==
+        Exchange::cancelled)
+        return Exchange::cancelled;
     if (outcome_.status == EquilibriumStatus::not_converged && disagreement_ <= 1.0)
         settle_beside(path.flow, duration, is_short ? Equilibrium::usual_creep_steps : few_steps);
-    if (outcome_.status == EquilibriumStatus::converged) return Exchange::agreed;
     if (outcome_.status == EquilibriumStatus::not_converged && is_lost_alone) outcome_ = alone;
-    return end_without(outcome_);
+    return end_of(outcome_);
 }
 
 // The skeleton beside water that has come to agree with it: what unbalanced force is left may be less than the flow's own error.

@@ -127,8 +127,14 @@ private:
     void take_stress(const Deposit& deposit);
 
     // the exchange (exchange.cpp)
+    struct Settled {  // an exchange that is agreed on
+        double first_disagreement = 0;
+        bool jointly = false;
+    };
     Exchange exchange(double duration, bool is_short, const Cancelled& cancelled);
-    [[nodiscard]] static Exchange end_without(const EquilibriumOutcome& outcome);
+    Exchange settle_in_turn(double duration, FlowPath& path, bool is_short, const Cancelled& cancelled,
+                            Settled& settled);
+    [[nodiscard]] static Exchange end_of(const EquilibriumOutcome& outcome);
     AdvanceResult advance_flow(double duration, FlowPath& path, const Cancelled& cancelled);
     [[nodiscard]] bool skeleton_moves() const { return equilibrium_ && !state_.equilibrium_lost; }
     [[nodiscard]] double shorter_exchange(double duration, double whole) const;
@@ -143,6 +149,11 @@ private:
     void correct_expectation();
     // the two together (joint.cpp)
     class Water;
+    [[nodiscard]] std::vector<double> expected_increment(double duration) const;
+    [[nodiscard]] bool is_as_expected(double duration) const;
+    Exchange creep_jointly(double duration, FlowPath& path, std::span<const double> from, int32_t most_steps,
+                           const Cancelled& cancelled);
+    Exchange go_on_jointly(double duration, FlowPath& path, const Cancelled& cancelled, Settled& settled);
     Exchange settle_jointly(double duration, FlowPath& path, bool is_short, const Cancelled& cancelled);
     void settle_beside(const FlowState& flow, double duration, int32_t most_creep_steps);
     [[nodiscard]] Loads loads() const {

@@ -1,5 +1,6 @@
 #include "motion/equilibrium.hpp"
 
+#include "linear/norm.hpp"
 #include "motion/stability.hpp"
 
 #include <Eigen/LU>
@@ -20,7 +21,7 @@ Equilibrium::Equilibrium(Mesh& mesh, Points& points, std::vector<Solid> solids, 
       stiffness_(kinematics_, equations_, mesh.dimension),
       acceleration_(equations_.freedom.size()) {
     const size_t freedoms = mesh.position.size();
-    for (auto* field : {&displacement_, &increment_, &reaction_, &external_, &internal_, &start_})
+    for (auto* field : {&displacement_, &increment_, &reaction_, &external_, &internal_, &start_, &strength_force_})
         field->assign(freedoms, 0.0);
     for (auto* field : {&residual_, &direction_, &last_direction_}) field->assign(equations_.freedom.size(), 0.0);
     if (equations_.count() == 0) return;  // every displacement is given: nothing to solve for
@@ -57,13 +58,16 @@ EquilibriumOutcome Equilibrium::solve(const Loads& loads, double wanted, int32_t
     return outcome;
 }
 
-EquilibriumOutcome Equilibrium::solve_with(Companion& companion, double expected, int32_t most_creep_steps) {
+EquilibriumOutcome Equilibrium::solve_with(Companion& companion, std::span<const double> increment, double expected,
+                                           int32_t most_creep_steps) {
     EquilibriumOutcome outcome;
     reject();
+    std::copy(increment.begin(), increment.end(), increment_.begin());
     is_at_start_ = false;
     wanted_ = tolerance;
     if (!follow(&companion, 0)) return outcome;
-    creep(viscosity_for(expected, companion, outcome), most_creep_steps, outcome, &companion);
+    const bool is_balanced = relative_residual() <= wanted_ && companion.agrees();
+    if (!is_balanced) creep(viscosity_for(expected, companion, outcome), most_creep_steps, outcome, &companion);
     finish(outcome);
     if (outcome.status == EquilibriumStatus::converged && !companion.agrees())
         outcome.status = EquilibriumStatus::not_converged;
@@ -81,14 +85,14 @@ EquilibriumOutcome Equilibrium::solve_elastically(const Loads& loads) {
 void Equilibrium::start(const Loads& loads) {
     skeleton_.revert();
     skeleton_.set_strength(loads.strength);
-    set_external_force(loads);
+    std::copy(loads.force.begin(), loads.force.end(), external_.begin());
+    add_body_forces(loads, external_);
     for (size_t i = 0; i < increment_.size(); ++i) {
         if (equations_.number[i] < 0) increment_[i] = loads.prescribed[i];
     }
 }
 
-void Equilibrium::set_external_force(const Loads& loads) {
-    std::copy(loads.force.begin(), loads.force.end(), external_.begin());
+void Equilibrium::add_body_forces(const Loads& loads, std::span<double> external) const {
     for_each_block(kinematics_.blocks(), [&](auto shape, const CellBlock& block) {
         using Shape = decltype(shape);
         for (const int32_t c : block.cells) {
@@ -103,16 +107,16 @@ void Equilibrium::set_external_force(const Loads& loads) {
                 pore += loads.pore_stress[first + i] * volume;
                 for (size_t a = 0; a < Shape::nodes; ++a) {
                     const size_t up = static_cast<size_t>(stencil[a]) * Shape::dimension + Shape::dimension - 1;
-                    external_[up] -= value[a] * weight;
+                    external[up] -= value[a] * weight;
                     if constexpr (Shape::dimension == 1)
-                        external_[up] += loads.pore_stress[first + i] * volume * g[a][0];
+                        external[up] += loads.pore_stress[first + i] * volume * g[a][0];
                 }
             }
             if constexpr (Shape::dimension == 2) {
                 const auto b = kinematics_.dilatation(c);
                 for (size_t a = 0; a < stencil.size(); ++a) {
-                    external_[2 * static_cast<size_t>(stencil[a])] += pore * b[2 * a];
-                    external_[2 * static_cast<size_t>(stencil[a]) + 1] += pore * b[2 * a + 1];
+                    external[2 * static_cast<size_t>(stencil[a])] += pore * b[2 * a];
+                    external[2 * static_cast<size_t>(stencil[a]) + 1] += pore * b[2 * a + 1];
                 }
             }
         }
@@ -124,7 +128,7 @@ void Equilibrium::finish(EquilibriumOutcome& outcome) {
     outcome.yielding = yielding_;
     outcome.residual = left_residual_ = relative_residual();
     if (outcome.residual <= tolerance || is_within_rounding()) outcome.status = EquilibriumStatus::converged;
-    for (const double u : increment_) outcome.largest_increment = std::max(outcome.largest_increment, std::abs(u));
+    outcome.largest_increment = largest(increment_);
 }
 
 void Equilibrium::accept() {
@@ -224,11 +228,16 @@ bool Equilibrium::is_stable(const Loads& loads) const {
 }
 
 std::span<const double> Equilibrium::answer(const Loads& loads) {
-    start(loads);
-    unbalance();
-    for (size_t i = 0; i < direction_.size(); ++i) direction_[i] = residual_[i] - left_[i];
+    std::fill(strength_force_.begin(), strength_force_.end(), 0.0);
+    skeleton_.add_strength_force(loads.strength, strength_force_);
+    answer_.assign(loads.force.begin(), loads.force.end());
+    add_body_forces(loads, answer_);
+    for (size_t i = 0; i < direction_.size(); ++i) {
+        const auto freedom = static_cast<size_t>(equations_.freedom[i]);
+        direction_[i] = answer_[freedom] - external_[freedom] - strength_force_[freedom];
+    }
     tangent_.solver->solve(tangent_.matrix, direction_);
-    answer_.assign(increment_.size(), 0.0);
+    std::fill(answer_.begin(), answer_.end(), 0.0);
     for (size_t i = 0; i < direction_.size(); ++i) answer_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
     return answer_;
 }

@@ -59,9 +59,10 @@ public:
     EquilibriumOutcome solve(const Loads& loads, double wanted = tolerance,
                              int32_t most_creep_steps = usual_creep_steps);
 
-    /// Creeps from the accepted state, without increment, to where the skeleton is in equilibrium with what loads it and that agrees.
-    /// `expected`: how far some node may go, m, for the first step's length; 0: unknown.
-    EquilibriumOutcome solve_with(Companion& companion, double expected, int32_t most_creep_steps);
+    /// Creeps from an increment (nodes x dimension, m) to where the skeleton is in equilibrium with what loads it and that agrees.
+    /// `expected`: how far some node may go in all, m, for the first step's length; 0: unknown.
+    EquilibriumOutcome solve_with(Companion& companion, std::span<const double> increment, double expected,
+                                  int32_t most_creep_steps);
 
     /// As solve() for a skeleton that does not yield: gravity turned on elastically.
     EquilibriumOutcome solve_elastically(const Loads& loads);
@@ -105,7 +106,7 @@ private:
 
     // equilibrium.cpp
     void start(const Loads& loads);
-    void set_external_force(const Loads& loads);
+    void add_body_forces(const Loads& loads, std::span<double> external) const;
     void update_geometry();
     void forget_increment();
     [[nodiscard]] double largest_displacement_gradient() const;
@@ -147,10 +148,9 @@ private:
     std::vector<double> external_, internal_, start_;            // nodes x dimension
     std::vector<double> residual_, direction_, last_direction_;  // equations
     Anderson acceleration_;
-    double wanted_ = tolerance;   // relative residual that the present solve aims at
-    double left_residual_ = 0;    // that the last solve left
-    std::vector<double> left_;    // equations: unbalanced force where a companion guides from
-    std::vector<double> answer_;  // nodes x dimension
+    double wanted_ = tolerance;                    // relative residual that the present solve aims at
+    double left_residual_ = 0;                     // that the last solve left
+    std::vector<double> answer_, strength_force_;  // nodes x dimension
     int32_t yielding_ = 0;
 };
 

@@ -5,6 +5,7 @@
 // Plain Newton with a search on the norm of the unbalanced force is left out: near a factor of one it stops in local minima, cycles
 // between the planes of the yield surface, and where dilation differs from friction (equilibria need not be unique then) it may jump
 // to another equilibrium than the one that the ground comes to.
+#include "linear/norm.hpp"
 #include "motion/equilibrium.hpp"
 
 #include <algorithm>
@@ -14,20 +15,6 @@
 namespace talus {
 
 namespace {
-
-double dot(std::span<const double> a, std::span<const double> b) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-    return sum;
-}
-
-double norm(std::span<const double> a) { return std::sqrt(dot(a, a)); }
-
-double largest(std::span<const double> a) {
-    double value = 0;
-    for (const double x : a) value = std::max(value, std::abs(x));
-    return value;
-}
 
 /// A part of a step and what is left there of the work that it began with.
 struct Reached {
@@ -225,12 +212,11 @@ bool Equilibrium::follow(Companion* companion, double length) {
 }
 
 void Equilibrium::guide(Companion& companion) {
-    left_ = residual_;
+    skeleton_.linearise_strength(increment_);
     std::fill(start_.begin(), start_.end(), 0.0);
     for (size_t i = 0; i < direction_.size(); ++i) start_[static_cast<size_t>(equations_.freedom[i])] = direction_[i];
     companion.guide(start_);
     for (size_t i = 0; i < direction_.size(); ++i) direction_[i] = start_[static_cast<size_t>(equations_.freedom[i])];
-    residual_ = left_;
 }
 
 void Equilibrium::find_mechanism(CollapseEvidence& evidence) {

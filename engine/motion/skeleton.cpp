@@ -13,16 +13,17 @@ using Eigen::Matrix2d;
 using Eigen::Matrix4d;
 using Eigen::Vector4d;
 
-/// Adds the nodal forces of one cell's stresses: the transpose of strain_increment().
+/// Adds the nodal forces of one cell's stresses (points x 4, Pa): the transpose of strain_increment().
 template <class Shape>
-void add_cell_force(const CellKinematics& kinematics, const Points& points, int32_t cell, std::span<double> force) {
+void add_cell_force(const CellKinematics& kinematics, const Points& points, std::span<const double> stress,
+                    int32_t cell, std::span<double> force) {
     const auto stencil = kinematics.stencil(cell);
     const auto first = static_cast<size_t>(points.cell_start[static_cast<size_t>(cell)]);
     typename Shape::Gradients nodal{};
     double pressure = 0;  // integral of the mean stress
     for (size_t i = 0; i < Shape::points; ++i) {
         const double volume = points.volume[first + i];
-        const Map<const Vector4d> s(points.skeleton_stress.data() + 4 * (first + i));
+        const Map<const Vector4d> s(stress.data() + 4 * (first + i));
         const auto g = kinematics.gradient<Shape>(cell, i);
         if constexpr (Shape::dimension == 1) {
             for (size_t a = 0; a < Shape::nodes; ++a) nodal[a][0] += volume * s[1] * g[a][0];
@@ -80,6 +81,7 @@ Skeleton::Skeleton(const CellKinematics& kinematics, Points& points, std::vector
 }
 
 void Skeleton::set_strength(std::span<const ShearStrength> strength) {
+    shear_strength_.assign(strength.begin(), strength.end());
     for (size_t p = 0; p < strength_.size(); ++p) {
         const Solid& solid = solids_[static_cast<size_t>(points_.soil[p])];
         if (solid.model == SolidModel::elastic) continue;
@@ -87,9 +89,9 @@ void Skeleton::set_strength(std::span<const ShearStrength> strength) {
     }
 }
 
-template <class Law>
-void Skeleton::respond_with(std::span<const double> increment, std::span<double> force, const CellBlock& block,
-                            const Law& law) {
+/// Calls `use(point, stress)` for the points of a block, with the stress that each would have if it did not yield.
+template <class Use>
+void Skeleton::for_each_trial(std::span<const double> increment, const CellBlock& block, const Use& use) const {
     const Matrix4d& elastic = elastic_tangent(block.soil);
     with_shape(block.nodes, [&](auto shape) {
         using Shape = decltype(shape);
@@ -102,39 +104,89 @@ void Skeleton::respond_with(std::span<const double> increment, std::span<double>
                 const auto gradient = displacement_gradient<Shape>(kinematics_.gradient<Shape>(c, i), u);
                 const Vector4d trial = Map<const Vector4d>(accepted_.stress.data() + 4 * p) +
                                        elastic * strain_increment<Shape>(gradient, dilatation);
-                Map<Vector4d>(points_.skeleton_stress.data() + 4 * p) = law(p, trial);
+                use(p, trial);
             }
-            add_cell_force<Shape>(kinematics_, points_, c, force);
         }
+    });
+}
+
+/// Adds the nodal forces that balance stresses (points x 4, Pa) in a block.
+void Skeleton::add_force(std::span<const double> stress, const CellBlock& block, std::span<double> force) const {
+    with_shape(block.nodes, [&](auto shape) {
+        for (const int32_t c : block.cells) add_cell_force<decltype(shape)>(kinematics_, points_, stress, c, force);
     });
 }
 
 int32_t Skeleton::respond(std::span<const double> increment, std::span<double> force) {
     int32_t yielding = 0;
+    const auto stress_of = [&](size_t p) { return Map<Vector4d>(points_.skeleton_stress.data() + 4 * p); };
     for (const CellBlock& block : kinematics_.blocks()) {
         if (is_elastic(block.soil)) {
-            respond_with(increment, force, block, [](size_t, const Vector4d& trial) { return trial; });
-            continue;
+            for_each_trial(increment, block, [&](size_t p, const Vector4d& trial) { stress_of(p) = trial; });
+        } else {
+            const Elasticity& elastic = elasticity_[static_cast<size_t>(block.soil)];
+            for_each_trial(increment, block, [&](size_t p, const Vector4d& trial) {
+                points_.plastic_strain[p] = accepted_.plastic_strain[p];
+                stress_of(p) = trial;
+                yields_[p] = is_admissible(strength_[p], trial) ? 0 : 1;
+                if (yields_[p] == 0) return;
+                Matrix4d tangent;
+                const PlasticReturn plastic = return_to_yield_surface(elastic, strength_[p], trial, &tangent);
+                Map<Matrix4d>(tangent_.data() + 16 * p) = tangent;
+                points_.plastic_strain[p] += plastic.plastic_shear_strain;
+                stress_of(p) = plastic.stress;
+                ++yielding;
+            });
         }
-        const Elasticity& elastic = elasticity_[static_cast<size_t>(block.soil)];
-        respond_with(increment, force, block, [&](size_t p, const Vector4d& trial) -> Vector4d {
-            points_.plastic_strain[p] = accepted_.plastic_strain[p];
-            yields_[p] = is_admissible(strength_[p], trial) ? 0 : 1;
-            if (yields_[p] == 0) return trial;
-            Matrix4d tangent;
-            const PlasticReturn plastic = return_to_yield_surface(elastic, strength_[p], trial, &tangent);
-            Map<Matrix4d>(tangent_.data() + 16 * p) = tangent;
-            points_.plastic_strain[p] += plastic.plastic_shear_strain;
-            ++yielding;
-            return plastic.stress;
-        });
+        add_force(points_.skeleton_stress, block, force);
     }
     return yielding;
 }
 
+void Skeleton::linearise_strength(std::span<const double> increment) {
+    constexpr double share = 1e-6;  // of the trial stress, to which the returned one is linear in the cohesion
+    constexpr double turn = 1e-4;   // degrees
+    strength_slope_.assign(8 * yields_.size(), 0.0);
+    for (const CellBlock& block : kinematics_.blocks()) {
+        if (is_elastic(block.soil)) continue;
+        const Elasticity& elastic = elasticity_[static_cast<size_t>(block.soil)];
+        const Solid& solid = solids_[static_cast<size_t>(block.soil)];
+        for_each_trial(increment, block, [&](size_t p, const Vector4d& trial) {
+            if (yields_[p] == 0) return;
+            const auto slope = [&](double cohesion, double friction_angle) -> Vector4d {
+                const ShearStrength more{shear_strength_[p].cohesion + cohesion,
+                                         shear_strength_[p].friction_angle + friction_angle};
+                const MohrCoulomb stronger = mohr_coulomb(more, solid.dilation_angle, solid.tensile_strength);
+                const Vector4d stress = is_admissible(stronger, trial)
+                                            ? trial
+                                            : return_to_yield_surface(elastic, stronger, trial, nullptr).stress;
+                return (stress - Map<const Vector4d>(points_.skeleton_stress.data() + 4 * p)) /
+                       (cohesion + friction_angle);
+            };
+            Map<Vector4d>(strength_slope_.data() + 8 * p) = slope(share * trial.cwiseAbs().maxCoeff(), 0);
+            Map<Vector4d>(strength_slope_.data() + 8 * p + 4) = slope(0, turn);
+        });
+    }
+}
+
+void Skeleton::add_strength_force(std::span<const ShearStrength> strength, std::span<double> force) {
+    stress_change_.assign(4 * yields_.size(), 0.0);
+    for (size_t p = 0; p < shear_strength_.size(); ++p) {
+        const double* slope = strength_slope_.data() + 8 * p;
+        const double cohesion = strength[p].cohesion - shear_strength_[p].cohesion;
+        const double friction_angle = strength[p].friction_angle - shear_strength_[p].friction_angle;
+        for (size_t k = 0; k < 4; ++k) stress_change_[4 * p + k] = cohesion * slope[k] + friction_angle * slope[4 + k];
+    }
+    for (const CellBlock& block : kinematics_.blocks())
+        if (!is_elastic(block.soil)) add_force(stress_change_, block, force);
+}
+
 void Skeleton::respond_elastically(std::span<const double> increment, std::span<double> force) {
     for (const CellBlock& block : kinematics_.blocks()) {
-        respond_with(increment, force, block, [](size_t, const Vector4d& trial) { return trial; });
+        for_each_trial(increment, block, [&](size_t p, const Vector4d& trial) {
+            Map<Vector4d>(points_.skeleton_stress.data() + 4 * p) = trial;
+        });
+        add_force(points_.skeleton_stress, block, force);
     }
 }
 

@@ -26,7 +26,13 @@ public:
     /// balance them, integral of B^T stress, to `force`. Returns the number of points that yield.
     int32_t respond(std::span<const double> increment, std::span<double> force);
 
-    /// The same for a skeleton that does not yield: the predictor.
+    /// How the stress of the points that yield changes with their strength, at the strain of the last response.
+    void linearise_strength(std::span<const double> increment);
+
+    /// Adds to `force` what another strength than the last response's adds to its nodal forces, to first order; after linearise_strength().
+    void add_strength_force(std::span<const ShearStrength> strength, std::span<double> force);
+
+    /// The same as respond() for a skeleton that does not yield: the predictor.
     void respond_elastically(std::span<const double> increment, std::span<double> force);
 
     /// Completes the trial state: strain and mobilised strength.
@@ -69,17 +75,20 @@ private:
     };
 
     bool is_elastic(int32_t soil) const { return solids_[static_cast<size_t>(soil)].model == SolidModel::elastic; }
-    template <class Law>
-    void respond_with(std::span<const double> increment, std::span<double> force, const CellBlock& block,
-                      const Law& law);
+    template <class Use>
+    void for_each_trial(std::span<const double> increment, const CellBlock& block, const Use& use) const;
+    void add_force(std::span<const double> stress, const CellBlock& block, std::span<double> force) const;
 
     const CellKinematics& kinematics_;
     Points& points_;
     std::vector<Solid> solids_;
     std::vector<Elasticity> elasticity_;            // one a soil
     std::vector<Eigen::Matrix4d> elastic_tangent_;  // one a soil
+    std::vector<ShearStrength> shear_strength_;     // one a point, as given
     std::vector<MohrCoulomb> strength_;             // one a point
     std::vector<double> tangent_;                   // points x 16, where the point yields
+    std::vector<double> strength_slope_;            // points x 8: of the stress by cohesion, by friction angle
+    std::vector<double> stress_change_;             // points x 4, Pa
     std::vector<uint8_t> yields_;
     State accepted_;
 };
