@@ -219,7 +219,6 @@ void Skeleton::keep_moved(std::span<const double> increment) {
         using Shape = decltype(shape);
         const bool elastic = is_elastic(block.soil);
         const Matrix4d& stiffness = elastic_tangent(block.soil);
-        const Elasticity& moduli = elasticity_[static_cast<size_t>(block.soil)];
         for (const int32_t c : block.cells) {
             const auto first = static_cast<size_t>(points_.cell_start[static_cast<size_t>(c)]);
             const auto u = gather_increment<Shape>(kinematics_.stencil(c), increment.data());
@@ -244,11 +243,10 @@ void Skeleton::keep_moved(std::span<const double> increment) {
                     moved = trial;
                     continue;
                 }
-                Matrix4d tangent;
-                const PlasticReturn plastic = return_stress(moduli, strength_[p], trial, tangent);
-                moved = plastic.stress;
-                points_.plastic_strain[p] = accepted_.plastic_strain[p] + plastic.plastic_shear_strain;
-                points_.mobilised_strength[p] = mobilised_strength(strength_[p], plastic.stress);
+                // What a turn w strains linearly, w^2 / 2, may be far more than stiff ground bears: there it is plastic, and the balance stands.
+                const Vector4d balanced = turned(moved, rotation, 1);
+                moved = is_admissible(strength_[p], trial) ? trial : balanced;
+                points_.mobilised_strength[p] = mobilised_strength(strength_[p], moved);
             }
         }
     });

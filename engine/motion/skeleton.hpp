@@ -42,7 +42,8 @@ public:
     void keep();
 
     /// The accepted state again, turned by the increment's rotation and strained by its objective strain (Hughes & Winget, Int.
-    /// J. Numer. Methods Eng. 15, 1980): what the trial state is on the geometry that the increment leads to.
+    /// J. Numer. Methods Eng. 15, 1980): what the trial state is on the geometry that the increment leads to. Where that is more than the
+    /// ground bears, the trial state, turned.
     void keep_moved(std::span<const double> increment);
 
     /// Back to the accepted state.

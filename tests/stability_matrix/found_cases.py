@@ -82,10 +82,13 @@ def coupled_cases():
     sand = earth(cohesion=0, friction=20, dilation=10, poisson=0.49, n=4, alpha=1e-5, conductivity=1e-8, strength=fredlund)
     scene = few_cells(sand, 1, {"flow": "hydrostatic", "waterTable": 0, "stress": "k0", "k0": 0.4}, surface=rain_zone(1e-6))
     yield Case("found/91_reduced", scene, [["step", 1, 5]])
-    for number in (31, 77, 83, 89, 91, 107, 146, 191, 187, 203, 254, 257, 272, 287, 371, 382, 403, 440, 467, 673, 754, 773,
-                   779, 787, 865, 914, 980, 1022, 1028, 1191, 1505, 1574, 1966, 2218, 2645, 3302, 3622, 3922, 3926, 4193, 5626, 6434,
-                   7319, 9409, 12455, 13202, 14286, 17563):
+    for number in (31, 77, 83, 89, 91, 107, 146, 187, 191, 203, 254, 257, 272, 287, 371, 382, 403, 440, 467, 673, 754,
+                   773, 779, 787, 865, 914, 980, 1022, 1028, 1191, 1505, 1574, 1850, 1966, 2218, 2645, 3302, 3455, 3622,
+                   3922, 3926, 4193, 5626, 6434, 7319, 9409, 9818, 9983, 10307, 12215, 12455, 13202, 14286, 14342,
+                   15641, 17563):
         yield replace(random_case(number), name=f"found/{number}")
+    # When it loses its equilibrium hangs on round-off, and with it what water it has at the end.
+    yield replace(random_case(9692), name="found/9692", tightened=False)
 
 
 def moving_cases():

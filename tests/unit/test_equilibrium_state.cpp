@@ -141,6 +141,33 @@ TEST_CASE("equilibrium: a stress turns with the ground, in one step of 90 degree
     }
 }
 
+// A turn by 1e-4 along the nodes' straight ways is 1e-8 of volume: 1e13 Pa / (3 (1 - 2 nu)) times that is 170 MPa of tension.
+TEST_CASE("equilibrium: stiff ground that yields keeps its stress in a turn that strains it beyond its strength") {
+    Mesh mesh = grid_mesh(1, 1, CellKind::quads, [](double x, double y) { return std::array<double, 2>{x, y}; });
+    Points points = unstressed_points(mesh);
+    const double turn = 1e-4;
+    const std::array<double, 4> stress = {-4e4, -1e4, -2e4, 0};
+    for (size_t p = 0; p < points.volume.size(); ++p)
+        std::copy(stress.begin(), stress.end(), points.skeleton_stress.begin() + static_cast<std::ptrdiff_t>(4 * p));
+    const std::vector<uint8_t> prescribed(mesh.position.size(), 1);
+    Equilibrium equilibrium(mesh, points, {mohr_coulomb_solid(1e13, 0.4999)}, prescribed, 0);
+    LoadArrays loads(mesh, points);
+    std::fill(loads.strength.begin(), loads.strength.end(), ShearStrength{2e3, 30});
+    for (size_t i = 0; i < mesh.position.size(); i += 2) {
+        loads.prescribed[i] = -turn * mesh.position[i + 1];
+        loads.prescribed[i + 1] = turn * mesh.position[i];
+    }
+    CHECK(equilibrium.solve(loads.view()).yielding > 0);
+    const std::vector<double> balanced = points.skeleton_stress;
+    equilibrium.accept();
+    for (size_t p = 0; p < points.volume.size(); ++p) {
+        for (size_t k = 0; k < 3; ++k) {
+            CHECK(balanced[4 * p + k] < -5e3);
+            CHECK(points.skeleton_stress[4 * p + k] == doctest::Approx(balanced[4 * p + k]).epsilon(1e-6));
+        }
+    }
+}
+
 TEST_CASE("equilibrium: nodes, points and volumes follow the increment") {
     Mesh mesh = grid_mesh(3, 2, CellKind::quads, [](double x, double y) {
         return std::array<double, 2>{x + 0.1 * y, y - 0.1 * x * y};
