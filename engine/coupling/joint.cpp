@@ -186,19 +186,13 @@ void Simulation::Water::answer_pressures(std::span<const double> change) {
     }
 }
 
-std::vector<double> Simulation::expected_increment(double duration) const {
-    std::vector<double> increment = state_.displacement_rate;
-    for (double& u : increment) u *= duration;
-    return increment;
-}
-
 Simulation::Exchange Simulation::creep_jointly(double duration, FlowPath& path, std::span<const double> from,
                                                int32_t most_steps, const Cancelled& cancelled) {
     const double flow_before = counts.seconds_flow;
     {
         const Stopwatch stopwatch(counts.seconds_motion);
         Water water(*this, duration, path, cancelled);
-        outcome_ = equilibrium_->solve_with(water, from, largest(expected_increment(duration)), most_steps);
+        outcome_ = equilibrium_->solve_with(water, from, largest(state_.displacement_rate) * duration, most_steps);
         if (water.is_cancelled()) return Exchange::cancelled;
     }
     counts.seconds_motion -= counts.seconds_flow - flow_before;
@@ -208,17 +202,19 @@ Simulation::Exchange Simulation::creep_jointly(double duration, FlowPath& path, 
 
 bool Simulation::is_as_expected(double duration) const {
     constexpr double alike = 0.5;
-    const std::vector<double> expected = expected_increment(duration);
+    const std::vector<double>& rate = state_.displacement_rate;
     double surprise = 0;
-    for (size_t i = 0; i < expected.size(); ++i)
-        surprise = std::max(surprise, std::abs(equilibrium_->increment()[i] - expected[i]));
-    return surprise <= alike * largest(expected);
+    for (size_t i = 0; i < rate.size(); ++i)
+        surprise = std::max(surprise, std::abs(equilibrium_->increment()[i] - rate[i] * duration));
+    return surprise <= alike * (largest(rate) * duration);
 }
 
 // From where the last exchange lets expect the two to be. A balance near that is where they went on to.
 Simulation::Exchange Simulation::go_on_jointly(double duration, FlowPath& path, const Cancelled& cancelled,
                                                Settled& settled) {
-    const Exchange result = creep_jointly(duration, path, expected_increment(duration), few_steps, cancelled);
+    std::vector<double> expected = state_.displacement_rate;
+    for (double& u : expected) u *= duration;
+    const Exchange result = creep_jointly(duration, path, expected, few_steps, cancelled);
     if (result == Exchange::cancelled) return result;
     if (result == Exchange::agreed && is_as_expected(duration)) {
         settled = {forecast_error_, true};

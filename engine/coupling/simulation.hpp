@@ -149,7 +149,6 @@ private:
     void correct_expectation();
     // the two together (joint.cpp)
     class Water;
-    [[nodiscard]] std::vector<double> expected_increment(double duration) const;
     [[nodiscard]] bool is_as_expected(double duration) const;
     Exchange creep_jointly(double duration, FlowPath& path, std::span<const double> from, int32_t most_steps,
                            const Cancelled& cancelled);

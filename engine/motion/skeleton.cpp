@@ -157,9 +157,7 @@ void Skeleton::linearise_strength(std::span<const double> increment) {
                 const ShearStrength more{shear_strength_[p].cohesion + cohesion,
                                          shear_strength_[p].friction_angle + friction_angle};
                 const MohrCoulomb stronger = mohr_coulomb(more, solid.dilation_angle, solid.tensile_strength);
-                const Vector4d stress = is_admissible(stronger, trial)
-                                            ? trial
-                                            : return_to_yield_surface(elastic, stronger, trial, nullptr).stress;
+                const Vector4d stress = return_stress(elastic, stronger, trial, nullptr).stress;
                 return (stress - Map<const Vector4d>(points_.skeleton_stress.data() + 4 * p)) /
                        (cohesion + friction_angle);
             };

@@ -143,8 +143,8 @@ Matrix4d tangent_by_differences(const Elasticity& elastic, const MohrCoulomb& ma
     Matrix4d unused;
     for (int j = 0; j < 4; ++j) {
         const Vector4d change = stiffness.col(j) * step;
-        result.col(j) = (return_stress(elastic, material, trial + change, unused).stress -
-                         return_stress(elastic, material, trial - change, unused).stress) /
+        result.col(j) = (return_stress(elastic, material, trial + change, &unused).stress -
+                         return_stress(elastic, material, trial - change, &unused).stress) /
                         (2 * step);
     }
     return result;
@@ -228,7 +228,7 @@ TEST_CASE("Mohr-Coulomb: an admissible stress stands, with the elastic tangent")
     Matrix4d tangent;
     for (const Vector4d& trial :
          {Vector4d(0, 0, 0, 0), Vector4d(-50e3, -100e3, -50e3, 20e3), Vector4d(4.9e3, 0, 0, 0)}) {
-        const PlasticReturn result = return_stress(elastic, material, trial, tangent);
+        const PlasticReturn result = return_stress(elastic, material, trial, &tangent);
         CHECK(result.region == YieldRegion::elastic);
         CHECK(result.stress == trial);
         CHECK(result.plastic_strain == Vector4d::Zero());
@@ -244,7 +244,7 @@ TEST_CASE("Mohr-Coulomb: every region gives back the stress and the plastic stra
         const Vector4d plastic_strain = oriented_strain(place.plastic_strain, orientation);
         const Vector4d trial = stress + stiffness * plastic_strain;
         Matrix4d tangent;
-        const PlasticReturn result = return_stress(elastic, place.material, trial, tangent);
+        const PlasticReturn result = return_stress(elastic, place.material, trial, &tangent);
         const double scale = trial.cwiseAbs().maxCoeff();
         CHECK(result.region == place.region);
         CHECK((result.stress - stress).cwiseAbs().maxCoeff() < 1e-10 * scale);
@@ -259,7 +259,7 @@ TEST_CASE("Mohr-Coulomb: the tangent is the derivative of the returned stress in
         const Vector4d trial =
             oriented(place.stress, orientation) + stiffness * oriented_strain(place.plastic_strain, orientation);
         Matrix4d tangent;
-        return_stress(elastic, place.material, trial, tangent);
+        return_stress(elastic, place.material, trial, &tangent);
         const Matrix4d differences = tangent_by_differences(elastic, place.material, trial);
         CHECK((tangent - differences).cwiseAbs().maxCoeff() < 1e-6 * stiffness(0, 0));
     });
@@ -285,7 +285,7 @@ TEST_CASE("Mohr-Coulomb: the tangent where two trial principal stresses are equa
             CAPTURE(difference);
             const Vector4d trial = c.trial + difference * Vector4d(1, -1, 0, 0.3);
             Matrix4d tangent;
-            CHECK(return_stress(elastic, material, trial, tangent).region == c.region);
+            CHECK(return_stress(elastic, material, trial, &tangent).region == c.region);
             const Matrix4d differences = tangent_by_differences(elastic, material, trial);
             CHECK((tangent - differences).cwiseAbs().maxCoeff() < 1e-6 * stiffness(0, 0));
         }
@@ -299,7 +299,7 @@ TEST_CASE("Mohr-Coulomb: associated flow has a symmetric tangent and dissipates"
         material.sin_dilation = material.sin_friction;
         const Vector4d trial = sweep.stress();
         Matrix4d tangent;
-        const PlasticReturn result = return_stress(elastic, material, trial, tangent);
+        const PlasticReturn result = return_stress(elastic, material, trial, &tangent);
         const double stiffness = elastic.lame + 2 * elastic.shear;
         REQUIRE((tangent - tangent.transpose()).cwiseAbs().maxCoeff() < 1e-9 * (stiffness + elastic.shear));
         const double size = trial.cwiseAbs().maxCoeff();
@@ -315,12 +315,12 @@ TEST_CASE("Mohr-Coulomb: associated flow returns to the closest admissible stres
         material.sin_dilation = material.sin_friction;
         const Vector4d trial = sweep.stress();
         Matrix4d unused;
-        const PlasticReturn result = return_stress(elastic, material, trial, unused);
+        const PlasticReturn result = return_stress(elastic, material, trial, &unused);
         const double size = trial.cwiseAbs().maxCoeff();
         double closer = 0;  // work of the plastic strain towards another admissible stress, over its round-off
         for (int j = 0; j < 20; ++j) {
             const Vector4d other_trial = sweep.stress();
-            const Vector4d other = return_stress(elastic, material, other_trial, unused).stress;
+            const Vector4d other = return_stress(elastic, material, other_trial, &unused).stress;
             const double round_off = 1e-12 * std::max(size, other_trial.cwiseAbs().maxCoeff()) * size / elastic.shear;
             closer = std::max(closer, result.plastic_strain.dot(other - result.stress) / round_off);
         }
@@ -339,7 +339,7 @@ TEST_CASE("Mohr-Coulomb: 100000 stresses return to the yield surface, with nothi
         const MohrCoulomb material = sweep.material();
         const Vector4d trial = sweep.stress();
         Matrix4d tangent;
-        const PlasticReturn result = return_stress(elastic, material, trial, tangent);
+        const PlasticReturn result = return_stress(elastic, material, trial, &tangent);
         const bool finite = result.stress.allFinite() && tangent.allFinite() && result.plastic_strain.allFinite() &&
                             std::isfinite(result.plastic_shear_strain);
         if (!finite) ++not_finite;
@@ -376,10 +376,10 @@ TEST_CASE("Mohr-Coulomb: the returned stress does not jump from one region to th
         const int steps = 400;
         const Vector4d change = (random_stress() - start) / steps;
         Matrix4d unused;
-        Vector4d before = return_stress(elastic, material, start, unused).stress;
+        Vector4d before = return_stress(elastic, material, start, &unused).stress;
         double largest_change = 0;
         for (int i = 1; i <= steps; ++i) {
-            const Vector4d now = return_stress(elastic, material, start + i * change, unused).stress;
+            const Vector4d now = return_stress(elastic, material, start + i * change, &unused).stress;
             largest_change = std::max(largest_change, (now - before).norm());
             before = now;
         }
@@ -395,7 +395,7 @@ TEST_CASE("Mohr-Coulomb: Tresca keeps the mean stress and half the stress differ
         const Vector4d trial(sweep.uniform(-1e6, 1e6), sweep.uniform(-1e6, 1e6), sweep.uniform(-1e6, 1e6),
                              sweep.uniform(-1e6, 1e6));
         Matrix4d unused;
-        const PlasticReturn result = return_stress(elastic, material, trial, unused);
+        const PlasticReturn result = return_stress(elastic, material, trial, &unused);
         REQUIRE(result.region != YieldRegion::elastic);
         const auto [largest, smallest] = extreme_stress(result.stress);
         REQUIRE((largest - smallest) / 2 == doctest::Approx(10e3).epsilon(1e-9));
@@ -411,7 +411,7 @@ TEST_CASE("Mohr-Coulomb: shear dilates by the dilation angle") {
         const MohrCoulomb material = soil(12e3, 30, dilation_angle, infinity);
         const Vector4d trial(-60e3, -200e3, -90e3, 80e3);
         Matrix4d unused;
-        const PlasticReturn result = return_stress(elastic, material, trial, unused);
+        const PlasticReturn result = return_stress(elastic, material, trial, &unused);
         REQUIRE(result.region == YieldRegion::shear);
         const double volume = result.plastic_strain.head<3>().sum();
         const double in_plane_shear =
@@ -434,7 +434,7 @@ TEST_CASE("Mohr-Coulomb: a column pressed in yy only, by hand") {
     const Elasticity elastic = elasticity(young_modulus, poisson_ratio);
     Matrix4d tangent;
     const PlasticReturn result =
-        return_stress(elastic, soil(0, 30, 0, infinity), Vector4d(-10e3, -100e3, -10e3, 0), tangent);
+        return_stress(elastic, soil(0, 30, 0, infinity), Vector4d(-10e3, -100e3, -10e3, 0), &tangent);
     CHECK(result.region == YieldRegion::shear_edge);
     CHECK(result.stress.isApprox(Vector4d(-24e3, -72e3, -24e3, 0), 1e-12));
     CHECK(tangent(1, 1) == doctest::Approx(9.0 / 5 * (elastic.lame + 2.0 / 3 * elastic.shear)).epsilon(1e-12));
@@ -449,9 +449,9 @@ TEST_CASE("Mohr-Coulomb: factor of safety and mobilised strength") {
 
     const Elasticity elastic = elasticity(young_modulus, poisson_ratio);
     Matrix4d unused;
-    const Vector4d at_yield = return_stress(elastic, material, Vector4d(-60e3, -300e3, -90e3, 80e3), unused).stress;
+    const Vector4d at_yield = return_stress(elastic, material, Vector4d(-60e3, -300e3, -90e3, 80e3), &unused).stress;
     CHECK(factor_of_safety(material, at_yield) == doctest::Approx(1).epsilon(1e-9));
-    const Vector4d at_apex = return_stress(elastic, material, Vector4d(90e3, 80e3, 85e3, 3e3), unused).stress;
+    const Vector4d at_apex = return_stress(elastic, material, Vector4d(90e3, 80e3, 85e3, 3e3), &unused).stress;
     CHECK(factor_of_safety(material, at_apex) == doctest::Approx(1).epsilon(1e-6));
     CHECK(mobilised_strength(material, at_apex) == doctest::Approx(1).epsilon(1e-6));
 

@@ -68,12 +68,12 @@ inline bool is_admissible(const MohrCoulomb& material, const Eigen::Vector4d& st
 PlasticReturn return_to_yield_surface(const Elasticity& elastic, const MohrCoulomb& material,
                                       const Eigen::Vector4d& trial, Eigen::Matrix4d* tangent);
 
-/// The stress of a step whose elastic trial stress is given, and its consistent tangent. Defined for any trial stress
+/// The stress of a step whose elastic trial stress is given, and its consistent tangent, null where it is not wanted. Defined for any trial stress
 /// (below 1e150 Pa, whose square is a number).
 inline PlasticReturn return_stress(const Elasticity& elastic, const MohrCoulomb& material, const Eigen::Vector4d& trial,
-                                   Eigen::Matrix4d& tangent) {
-    if (!is_admissible(material, trial)) return return_to_yield_surface(elastic, material, trial, &tangent);
-    tangent = elastic_stiffness(elastic);
+                                   Eigen::Matrix4d* tangent) {
+    if (!is_admissible(material, trial)) return return_to_yield_surface(elastic, material, trial, tangent);
+    if (tangent != nullptr) *tangent = elastic_stiffness(elastic);
     return {trial, Eigen::Vector4d::Zero(), 0, YieldRegion::elastic};
 }
 
