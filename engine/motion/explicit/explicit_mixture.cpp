@@ -118,7 +118,7 @@ void ExplicitMixture<filling>::even_out(size_t first, size_t count, const Spline
             even_out_solutes(first, count, spline, dt, fluids, keeps ? dissolved_due : dissolved_mass,
                              keeps ? vapour_due : vapour_mass);
         }
-        gather_pairs(nodes_.grid, nodes_.gas.evenings, count, spline, evening, gas_evening);
+        gather_pairs(nodes_.grid, nodes_.evening, count, spline, evening, gas_evening);
         for (size_t k = 0; k < count; ++k) {
             const double passed =
                 dt * fluids.gas_volume[k] * (gas_evening.y[k] - gas_evening.x[k] * fluids.gas_potential[k]);
@@ -157,23 +157,32 @@ void ExplicitMixture<filling>::keep_fluids(size_t first, size_t count, const Flu
 template <Filling filling>
 void ExplicitMixture<filling>::owe_water(Strip strip) {
     SplineBlock spline;
-    VelocityBlock rates;
+    VelocityBlock rates, gas_rates;
     for (size_t first = strip.first; first < strip.last; first += block_size) {
         const size_t count = std::min(block_size, strip.last - first);
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
-        gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
+        gather_rates(count, spline, rates, gas_rates);
         for (size_t k = 0; k < count; ++k)
             points_[water_due][first + k] += nodes_.flow_time * points_[solid_mass][first + k] * rates.y[k];
         if constexpr (exchanges) add_solutes(first, count, spline, dissolved_due, vapour_due);
         if constexpr (has_gas) {
             BlockValues weight;
             find_gas_weights(first, count, weight);
-            gather_values(nodes_.grid, nodes_.gas.rates, count, spline, rates);
             for (size_t k = 0; k < count; ++k) {
                 points_[gas_due][first + k] +=
-                    nodes_.flow_time * (weight[k] * rates.x[k] + points_[gas_mass][first + k] * rates.y[k]);
+                    nodes_.flow_time * (weight[k] * gas_rates.x[k] + points_[gas_mass][first + k] * gas_rates.y[k]);
             }
         }
+    }
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::gather_rates(size_t count, const SplineBlock& spline, VelocityBlock& rates,
+                                            [[maybe_unused]] VelocityBlock& gas_rates) const {
+    if constexpr (has_gas) {
+        gather_pairs(nodes_.grid, nodes_.rates, count, spline, rates, gas_rates);
+    } else {
+        gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
     }
 }
 
@@ -354,7 +363,7 @@ template <Filling filling>
 void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
     SplineBlock spline;
     GradientBlock gradient;
-    VelocityBlock rates;
+    VelocityBlock rates, gas_rates;
     MaterialBlock material;
     FluidBlock fluids;
     BlockValues total_xx, total_yy;
@@ -365,13 +374,8 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
         gather_gradient(nodes_.grid, nodes_.velocity, count, spline, gradient);
         if constexpr (exchanges) take_solutes(first, count, spline);
-        if constexpr (has_gas) {
-            VelocityBlock gas_rates;
-            gather_pairs(nodes_.grid, nodes_.gas.both_rates, count, spline, rates, gas_rates);
-            take_gas(first, count, gas_rates);
-        } else {
-            gather_values(nodes_.grid, nodes_.rates, count, spline, rates);
-        }
+        gather_rates(count, spline, rates, gas_rates);
+        if constexpr (has_gas) take_gas(first, count, gas_rates);
         take_water(first, count, rates);
         smooth_dilation(count, rates.x, gradient);
         set_elasticity(soils_, points_, first, count, material);
@@ -439,8 +443,8 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
         constexpr VelocityFields liquid_fields{liquid_velocity_x, liquid_affine_xx};
         if constexpr (has_gas) {
             BlockValues gas_outflow;
-            gather_divergences(grid, nodes_.gas.fluxes, count, spline, outflow, gas_outflow);
-            take_velocities<keeps>(grid, nodes_.gas.velocities, points_, first, count, spline,
+            gather_divergences(grid, nodes_.flux, count, spline, outflow, gas_outflow);
+            take_velocities<keeps>(grid, nodes_.fluid_velocity, points_, first, count, spline,
                                    {points_[water_mass] + first, points_[gas_mass] + first},
                                    {liquid_fields, {gas_velocity_x, gas_affine_xx}}, {&liquid_gift, &gas_gift});
             for (size_t k = 0; k < count; ++k) gas_gift[k].own[3] = -fluids.gas_volume[k] * gas_outflow[k];
@@ -450,7 +454,7 @@ void ExplicitMixture<filling>::move_and_give(Strip strip, double dt) {
             }
         } else {
             gather_divergence(grid, nodes_.flux, count, spline, outflow);
-            take_velocity<keeps>(grid, nodes_.liquid_velocity, points_, first, count, spline,
+            take_velocity<keeps>(grid, nodes_.fluid_velocity, points_, first, count, spline,
                                  points_[water_mass] + first, liquid_fields, liquid_gift, liquid_taken);
         }
         for (size_t k = 0; k < count; ++k) {
@@ -507,7 +511,6 @@ void ExplicitMixture<filling>::forget_left_nodes(std::vector<Returned>& returned
 template <Filling filling>
 void ExplicitMixture<filling>::move_gas_nodes(const Grid& old) {
     NodeGas& gas = nodes_.gas;
-    for (auto* field : {&gas.velocities, &gas.fluxes, &gas.evenings}) move_nodes(*field, old, nodes_.grid);
     move_nodes(gas.returned, old, nodes_.grid);
     if constexpr (!exchanges) return;
     NodeSolutes& solutes = nodes_.solutes;
@@ -531,7 +534,8 @@ void ExplicitMixture<filling>::arrange_points() {
         solutes_returned = nodes_.returned_solutes();
     }
     if (arrangement_.arrange(points_, nodes_.grid)) {
-        for (auto* field : {&nodes_.velocity, &nodes_.liquid_velocity, &nodes_.flux, &nodes_.rates, &nodes_.evening})
+        move_nodes(nodes_.velocity, old, nodes_.grid);
+        for (auto* field : {&nodes_.fluid_velocity, &nodes_.flux, &nodes_.rates, &nodes_.evening})
             move_nodes(*field, old, nodes_.grid);
         move_nodes(nodes_.returned, old, nodes_.grid);
         if constexpr (has_gas) move_gas_nodes(old);

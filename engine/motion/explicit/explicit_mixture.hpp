@@ -132,6 +132,7 @@ private:
     void even_out(size_t first, size_t count, const SplineBlock& spline, double dt, FluidBlock& fluids,
                   BlockValues& missing);
     void owe_water(Strip strip);
+    void gather_rates(size_t count, const SplineBlock& spline, VelocityBlock& rates, VelocityBlock& gas_rates) const;
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
     void find_pores(size_t first, size_t count, BlockValues& pores) const;
     void find_gas_weights(size_t first, size_t count, BlockValues& weight) const;

@@ -34,23 +34,12 @@ void add(NodeMeansBesideGas& inside, const NodeMeansBesideGas& beyond) {
 
 }  // namespace
 
-void NodeGas::clear_flow(size_t node) {
-    flux[node] = {};
-    returned[node] = 0;
-    evening[node] = {};
-}
-
 void NodeGas::resize(size_t nodes) {
     momentum.assign(nodes, {});
     weight.assign(nodes, 0.0);
     gradients.assign(nodes, {});
     means.assign(nodes, {});
-    velocity.resize(nodes);
-    flux.resize(nodes);
     returned.resize(nodes);
-    rates.resize(nodes);
-    evening.resize(nodes);
-    for (auto* field : {&velocities, &fluxes, &evenings, &both_rates}) field->resize(nodes);
 }
 
 template <bool has_gas, bool exchanges>
@@ -63,43 +52,35 @@ void GridMixture<has_gas, exchanges>::resize() {
     means.assign(nodes, {});
     returned.resize(nodes);
     capacity.resize(nodes);
-    evening.resize(nodes);
     velocity.resize(nodes);
-    liquid_velocity.resize(nodes);
-    flux.resize(nodes);
-    rates.resize(nodes);
+    for (auto* field : {&fluid_velocity, &flux, &rates, &evening}) field->resize(nodes);
     if constexpr (has_gas) gas.resize(nodes);
     if constexpr (exchanges) solutes.resize(nodes);
 }
 
+/// Momenta and masses beyond a wall come inside. Their weight is mirrored as any force: where the wall turns it about, that is twice of it more than the
+/// weight of the mass inside.
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::fold_momenta() {
+    for_each_two_mirrors([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
+        const auto [inside, beyond] = nodes;
+        double mass = momentum[beyond].mass + liquid_momentum[beyond].mass;
+        if constexpr (has_gas) mass += gas.momentum[beyond].mass;
+        add_mirrored(force[inside], mirror, force[beyond]);
+        force[inside].y += (1 - mirror.y) * gravity * mass;
+        force[beyond] = {};
+        move_inside(momentum[inside], momentum[beyond], mirror);
+        move_inside(liquid_momentum[inside], liquid_momentum[beyond], even);
+        if constexpr (has_gas) {
+            move_inside(gas.momentum[inside], gas.momentum[beyond], even);
+            gas.weight[inside] += gas.weight[beyond];  // what is left beyond nobody reads
+        }
+    });
+}
+
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::begin_step() {
-    for_each_node([this](size_t i) {
-        force[i] = {0, -gravity * (momentum[i].mass + liquid_momentum[i].mass)};
-        gradients[i] = {};
-        means[i] = {};
-        if constexpr (has_gas) {
-            force[i].y -= gravity * gas.momentum[i].mass;
-            gas.gradients[i] = {};
-            gas.means[i] = {};
-        }
-        if constexpr (exchanges) {
-            solutes.gradients[i] = {};
-            solutes.means[i] = {};
-        }
-    });
-    for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
-        move_inside(momentum[nodes.inside], momentum[nodes.beyond], mirror);
-        add_mirrored(force[nodes.inside], mirror, force[nodes.beyond]);
-        force[nodes.beyond] = {};
-    });
-    for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
-        move_inside(liquid_momentum[nodes.inside], liquid_momentum[nodes.beyond], mirror);
-        if constexpr (has_gas) {
-            move_inside(gas.momentum[nodes.inside], gas.momentum[nodes.beyond], mirror);
-            gas.weight[nodes.inside] += gas.weight[nodes.beyond];  // what is left beyond nobody reads
-        }
-    });
+    fold_momenta();
     if constexpr (exchanges) fold_solutes();
     SpeedBound bound(least_mass);
     for_each_node([this, &bound](size_t i) {
@@ -109,74 +90,84 @@ void GridMixture<has_gas, exchanges>::begin_step() {
             returned[i] = 0;
         }
         const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
-        velocity[i] = {solid.x * inverse, solid.y * inverse};
-        bound.add(solid.mass, velocity[i]);
-        liquid_velocity[i] = velocity[i];
-        if (liquid.mass > 0) liquid_velocity[i] = {liquid.x / liquid.mass, liquid.y / liquid.mass};
-        rates[i] = {solid.more * inverse, (liquid.more + returned[i]) * inverse};
+        const NodeVector start{solid.x * inverse, solid.y * inverse};
+        velocity[i] = start;
+        bound.add(solid.mass, start);
+        const auto velocity_of = [&start](const NodeMomentum& fluid) {
+            return fluid.mass > 0 ? NodeVector{fluid.x / fluid.mass, fluid.y / fluid.mass} : start;
+        };
+        liquid_of(fluid_velocity[i]) = velocity_of(liquid);
+        liquid_of(rates[i]) = {solid.more * inverse, (liquid.more + returned[i]) * inverse};
         if constexpr (has_gas) {
             const NodeMomentum& own = gas.momentum[i];
-            gas.velocity[i] = velocity[i];
-            if (own.mass > 0) gas.velocity[i] = {own.x / own.mass, own.y / own.mass};
+            fluid_velocity[i].gas = velocity_of(own);
             const double gain = own.more + gas.returned[i];
             const bool loses = gain < 0 && own.mass > 0;
-            gas.rates[i] = {};
-            if (loses) gas.rates[i].y = gain / own.mass;
-            if (!loses && gas.weight[i] > 0) gas.rates[i].x = gain / gas.weight[i];
+            rates[i].gas = {};
+            if (loses) rates[i].gas.y = gain / own.mass;
+            if (!loses && gas.weight[i] > 0) rates[i].gas.x = gain / gas.weight[i];
             if (!loses && !(gas.weight[i] > 0)) gas.escaped += flow_time * gain;
         }
     });
     start_speed = bound.value();
     if constexpr (exchanges) find_solute_rates();
     mirror();
-    if constexpr (has_gas) for_each_node([this](size_t i) { gas.both_rates[i] = {rates[i], gas.rates[i]}; });
 }
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::end_step(double dt) {
     fold_forces();
-    find_surface_widths();
-    for_each_node([this, dt](size_t i) { solve(i, dt); });
-    if (!immersed) cross_surface(dt);
-    if constexpr (exchanges) carry_solutes(dt);
-    mirror();
-    if constexpr (has_gas) {
-        for_each_node([this](size_t i) {
-            gas.velocities[i] = {liquid_velocity[i], gas.velocity[i]};
-            gas.fluxes[i] = {flux[i], gas.flux[i]};
-            gas.evenings[i] = {evening[i], gas.evening[i]};
-        });
-    }
-    flow_time = dt;
+    find_surface();
     SpeedBound bound(least_mass);
-    for_each_node([this, &bound](size_t i) {
+    for_each_node([this, dt, &bound](size_t i) {
+        solve(i, dt);
         bound.add(momentum[i].mass, velocity[i]);
-        momentum[i] = {};
-        liquid_momentum[i] = {};
-        if constexpr (has_gas) {
-            gas.momentum[i] = {};
-            gas.weight[i] = 0;
-        }
-        if constexpr (exchanges) solutes.gains[i] = {};
+        if constexpr (!exchanges) clear_sums(i);
     });
     speed = bound.value();
+    if (!immersed) cross_surface(dt);
+    if constexpr (exchanges) {
+        carry_solutes(dt);
+        for_each_node([this](size_t i) { clear_sums(i); });
+    }
+    mirror();
+    flow_time = dt;
+}
+
+/// For what the points give next.
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::clear_sums(size_t node) {
+    momentum[node] = {};
+    liquid_momentum[node] = {};
+    force[node] = {};
+    gradients[node] = {};
+    means[node] = {};
+    if constexpr (has_gas) {
+        gas.momentum[node] = {};
+        gas.weight[node] = 0;
+        gas.gradients[node] = {};
+        gas.means[node] = {};
+    }
+    if constexpr (exchanges) {
+        solutes.gains[node] = {};
+        solutes.gradients[node] = {};
+        solutes.means[node] = {};
+    }
 }
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::fold_forces() {
-    for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
-        add_mirrored(force[nodes.inside], mirror, force[nodes.beyond]);
-    });
-    for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
-        add_mirrored(gradients[nodes.inside], mirror, gradients[nodes.beyond]);
-        gradients[nodes.beyond] = {};
-        add(means[nodes.inside], means[nodes.beyond]);
-        means[nodes.beyond] = {};
-        if constexpr (has_gas) {
-            // What is left beyond the wall nobody reads: begin_step() clears it.
-            add_mirrored(gas.gradients[nodes.inside], mirror, gas.gradients[nodes.beyond]);
-            GasMeans& gas_in = gas.means[nodes.inside];
-            const GasMeans& gas_out = gas.means[nodes.beyond];
+    for_each_two_mirrors([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
+        const auto [inside, beyond] = nodes;
+        add_mirrored(force[inside], mirror, force[beyond]);
+        add_mirrored(gradients[inside], even, gradients[beyond]);
+        gradients[beyond] = {};
+        add(means[inside], means[beyond]);
+        means[beyond] = {};
+        if constexpr (has_gas) {  // what is left beyond the wall nobody reads
+            add_mirrored(gas.gradients[inside], even, gas.gradients[beyond]);
+            GasMeans& gas_in = gas.means[inside];
+            const GasMeans& gas_out = gas.means[beyond];
             gas_in.push += gas_out.push;
             gas_in.mobility += gas_out.mobility;
             gas_in.volume += gas_out.volume;
@@ -198,24 +189,25 @@ double GridMixture<has_gas, exchanges>::total(const std::vector<double>& values)
     return sum;
 }
 
+/// The nodes at the edge, and how wide that is in each column where it faces up.
 template <bool has_gas, bool exchanges>
-double GridMixture<has_gas, exchanges>::facing_up(size_t node) const {
-    return is_at_edge(node) ? std::max(gradients[node].edge_y, 0.0) : 0.0;
-}
-
-template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::find_surface_widths() {
+void GridMixture<has_gas, exchanges>::find_surface() {
     const auto columns = static_cast<size_t>(grid.cells[0]);
     surfaces_.assign(columns, {});
-    for_each_node([&](size_t i) { surfaces_[i % columns].width += facing_up(i); });
+    edge_.clear();
+    for_each_node([&](size_t i) {
+        if (!is_at_edge(i)) return;
+        edge_.push_back({i, facing_up(i)});
+        surfaces_[i % columns].width += facing_up(i);
+    });
 }
 
-/// Rain on a node, kg/s.
+/// Rain on a node whose edge faces up by so many metres, kg/s.
 template <bool has_gas, bool exchanges>
-double GridMixture<has_gas, exchanges>::falls_on(size_t node) const {
+double GridMixture<has_gas, exchanges>::falls_on(size_t node, double up) const {
+    if (rain.empty() || !(up > 0)) return 0;
     const size_t column = node % static_cast<size_t>(grid.cells[0]);
-    const double up = rain.empty() ? 0.0 : facing_up(node);
-    return up > 0 ? rain[column] * grid.cell_size * up / surfaces_[column].width : 0.0;
+    return rain[column] * grid.cell_size * up / surfaces_[column].width;
 }
 
 /// Every column's rain falls on its nodes at the edge in proportion to the edge's horizontal width there. What one of them cannot take, or
@@ -223,24 +215,24 @@ double GridMixture<has_gas, exchanges>::falls_on(size_t node) const {
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::cross_surface(double dt) {
     const auto columns = static_cast<size_t>(grid.cells[0]);
-    const auto takes = [&](size_t i) { return std::min(falls_on(i), capacity[i]); };
-    for_each_node([&](size_t i) {
-        if (!is_at_edge(i)) return;
-        returned[i] += takes(i);
-        if (!(facing_up(i) > 0)) {
-            seepage -= dt * takes(i);
-            return;
+    for (const auto [node, up] : edge_) {
+        const double fallen = falls_on(node, up), taken = std::min(fallen, capacity[node]);
+        returned[node] += taken;
+        if (!(up > 0)) {
+            seepage -= dt * taken;
+            continue;
         }
-        OpenSurface& surface = surfaces_[i % columns];
-        surface.fallen += falls_on(i);
-        surface.left += falls_on(i) - takes(i);
-        surface.room += capacity[i] - takes(i);
-    });
-    for_each_node([&](size_t i) {
-        const OpenSurface& surface = surfaces_[i % columns];
-        if (facing_up(i) > 0 && surface.left > 0 && surface.room > 0)
-            returned[i] += (capacity[i] - takes(i)) * std::min(surface.left / surface.room, 1.0);
-    });
+        OpenSurface& surface = surfaces_[node % columns];
+        surface.fallen += fallen;
+        surface.left += fallen - taken;
+        surface.room += capacity[node] - taken;
+    }
+    for (const auto [node, up] : edge_) {
+        const OpenSurface& surface = surfaces_[node % columns];
+        if (!(up > 0) || !(surface.left > 0) || !(surface.room > 0)) continue;
+        const double taken = std::min(falls_on(node, up), capacity[node]);
+        returned[node] += (capacity[node] - taken) * std::min(surface.left / surface.room, 1.0);
+    }
     for (const OpenSurface& surface : surfaces_) {
         const double leaves = std::max(surface.left - surface.room, 0.0), runs_off = std::min(leaves, surface.fallen);
         rained += dt * surface.fallen;
@@ -251,7 +243,7 @@ void GridMixture<has_gas, exchanges>::cross_surface(double dt) {
 
 /// How the gas at a node answers to forces.
 template <bool has_gas, bool exchanges>
-GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt) {
+GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt) requires has_gas {
     const double volume = means[node].volume, mass = gas.momentum[node].mass;
     const GasMeans& mean = gas.means[node];
     GasAnswer answer;
@@ -269,7 +261,7 @@ GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt)
     answer.moved = mass / (1 + answer.drag);
     const double spread = answer.moved * dt / (cell_volume() * mean.volume);
     answer.evened = smoothing * answer.moved * dt / (mean.volume * mean.volume);
-    gas.evening[node] = {spread, spread * answer.push};
+    evening[node].gas = {spread, spread * answer.push};
     return answer;
 }
 
@@ -293,7 +285,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     returned[node] = 0;
     capacity[node] = 0;
     evening[node] = {};
-    if constexpr (has_gas) gas.clear_flow(node);
+    if constexpr (has_gas) gas.returned[node] = 0;
     if (!(mass > 0) || !(mean.volume > 0)) return;
     const double push = mean.push / mass;
     const double liquid_content = liquid_mass / (liquid_density * mean.volume);
@@ -302,36 +294,40 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     const double conductance = dt * liquid_content / (1 + drag);
     const double edge_conductance = dt * liquid_content / (1 + drag_of(mean.edge_lambda(mass)));
     const double spread = conductance * mean.volume / (cell_volume() * mass);
-    evening[node] = {spread, spread * push};
+    liquid_of(evening[node]) = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
     const double evened = evens ? smoothing * conductance / mean.volume : 0.0;
     const double moved = liquid_mass / (1 + drag);
-    double coupled = mass + moved * drag;
+    double coupled = mass + moved * drag, weight = gravity * (mass + liquid_mass);
     [[maybe_unused]] GasAnswer answer;
-    if constexpr (has_gas) answer = answer_of_gas(node, dt);
-    NodeVector &solid = velocity[node], &liquid = liquid_velocity[node];
-    const NodeVector outwards{sums.edge_x, sums.edge_y};
+    if constexpr (has_gas) {
+        answer = answer_of_gas(node, dt);
+        weight += gravity * gas.momentum[node].mass;
+    }
+    NodeVector &solid = velocity[node], &liquid = liquid_of(fluid_velocity[node]), &through = liquid_of(flux[node]);
+    const NodeVector outwards{sums.edge_x, sums.edge_y}, stress = force[node], total{stress.x, stress.y - weight};
     const auto move = [&](double NodeVector::*c, const NodeVector& pushed, const NodeVector& gas_pushed) {
         const double start = solid.*c, liquid_start = liquid.*c;
         const double alone = liquid_start + response * pushed.*c;
-        double whole = mass * start + liquid_mass * liquid_start + dt * (force[node].*c - edge_pressure * outwards.*c);
+        double whole = mass * start + liquid_mass * liquid_start + dt * (total.*c - edge_pressure * outwards.*c);
         [[maybe_unused]] double gas_alone = 0;
         if constexpr (has_gas) {
-            gas_alone = gas.velocity[node].*c + answer.response * gas_pushed.*c;
-            whole += gas.momentum[node].mass * gas.velocity[node].*c - answer.moved * gas_alone;
+            const double gas_start = fluid_velocity[node].gas.*c;
+            gas_alone = gas_start + answer.response * gas_pushed.*c;
+            whole += gas.momentum[node].mass * gas_start - answer.moved * gas_alone;
         }
         solid.*c = (whole - moved * alone) / coupled;
         liquid.*c = (alone + drag * solid.*c) / (1 + drag);
-        flux[node].*c = liquid_mass / mean.volume * (liquid.*c - solid.*c);
-        flux[node].*c -= evened * pushed.*c;
+        through.*c = liquid_mass / mean.volume * (liquid.*c - solid.*c) - evened * pushed.*c;
         if constexpr (has_gas) {
-            gas.velocity[node].*c = (gas_alone + answer.drag * solid.*c) / (1 + answer.drag);
-            gas.flux[node].*c = answer.density * (gas.velocity[node].*c - solid.*c) - answer.evened * gas_pushed.*c;
+            const double own = (gas_alone + answer.drag * solid.*c) / (1 + answer.drag);
+            fluid_velocity[node].gas.*c = own;
+            flux[node].gas.*c = answer.density * (own - solid.*c) - answer.evened * gas_pushed.*c;
         }
     };
     const auto flow = [&](const NodeVector& pushed, const NodeVector& gas_pushed, double stretch) {
         if constexpr (has_gas) {
-            const NodeVector& start = gas.velocity[node];
+            const NodeVector& start = fluid_velocity[node].gas;
             answer.choke({start.x + answer.response * gas_pushed.x - solid.x,
                           start.y + answer.response * gas_pushed.y - solid.y},
                          0.5 * grid.cell_size / (dt * stretch));
@@ -349,24 +345,24 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     }
     if (!is_at_edge(node)) {
         flow(inner, gas_inner, 1);
-        returned[node] = dot(flux[node], outwards);
-        if constexpr (has_gas) gas.returned[node] = dot(gas.flux[node], gas_outwards);
+        returned[node] = dot(through, outwards);
+        if constexpr (has_gas) gas.returned[node] = dot(flux[node].gas, gas_outwards);
         return;
     }
     const GroundEdge edge(outwards, mean.volume / cell_volume(), grid.cell_size);
     const double edge_head = gravity * liquid_density * (height_of(node) + edge.height);
     if (immersed) {
         flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y}, {}, 1);
-        seepage += dt * dot(flux[node], outwards);
+        seepage += dt * dot(through, outwards);
         return;
     }
     const NodeVector pushed = edge.stretched(inner), gas_pushed = edge.stretched(gas_inner);
     flow(pushed, gas_pushed, 1 + edge.more);
-    flux[node] = edge.stretched(flux[node]);
-    returned[node] = dot(flux[node], outwards);
+    through = edge.stretched(through);
+    returned[node] = dot(through, outwards);
     if constexpr (has_gas) {
-        gas.flux[node] = edge.stretched(gas.flux[node]);
-        gas.returned[node] = dot(gas.flux[node], gas_outwards);
+        flux[node].gas = edge.stretched(flux[node].gas);
+        gas.returned[node] = dot(flux[node].gas, gas_outwards);
     }
     if (!(edge.distance > 0)) return;
     const double carried =
@@ -379,7 +375,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
 /// Of what the edge can take, what rain offers; all where water comes out.
 template <bool has_gas, bool exchanges>
 double GridMixture<has_gas, exchanges>::wetted_share(size_t node) const {
-    const double offered = falls_on(node);
+    const double offered = falls_on(node, facing_up(node));
     if (capacity[node] > offered) return offered / capacity[node];
     return offered > 0 || capacity[node] < 0 ? 1.0 : 0.0;
 }
@@ -398,14 +394,14 @@ double GridMixture<has_gas, exchanges>::gas_distance(size_t node, const GroundEd
 /// edge changes no psi, whatever the step.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
-                                              const NodeVector& pushed) {
+                                              const NodeVector& pushed) requires has_gas {
     if (!(answer.density > 0)) return;
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
     const double conductance = dt * answer.moved / volume, driven = conductance / volume - answer.evened;
     const double outer_conductance =
         conductance * (1 + answer.drag) / (1 + answer.drag / (1 - 0.5 * wetted_share(node)));
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
-    const double carried = dot(gas.flux[node], outwards) - driven * dot(edge.stretched(pushed), outwards);
+    const double carried = dot(flux[node].gas, outwards) - driven * dot(edge.stretched(pushed), outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
     const double opening = outer_conductance * edge.length / gas_distance(node, edge);
     const double filling = dt * content * opening * gas.specific / gas.means[node].mass;
@@ -418,20 +414,13 @@ void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const Grou
 /// Beyond a wall the nodes move as the mirrored ground would; water slides along every wall.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::mirror() {
-    for_each_mirror([this](NodePair nodes, const Mirror& mirror) {
-        velocity[nodes.beyond] = {mirror.x * velocity[nodes.inside].x, mirror.y * velocity[nodes.inside].y};
-    });
-    for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
-        for (auto* field : {&liquid_velocity, &flux})
-            (*field)[nodes.beyond] = {mirror.x * (*field)[nodes.inside].x, mirror.y * (*field)[nodes.inside].y};
-        rates[nodes.beyond] = rates[nodes.inside];
-        evening[nodes.beyond] = evening[nodes.inside];
-        if constexpr (has_gas) {
-            for (auto* field : {&gas.velocity, &gas.flux})
-                (*field)[nodes.beyond] = {mirror.x * (*field)[nodes.inside].x, mirror.y * (*field)[nodes.inside].y};
-            gas.rates[nodes.beyond] = gas.rates[nodes.inside];
-            gas.evening[nodes.beyond] = gas.evening[nodes.inside];
-        }
+    for_each_two_mirrors([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
+        const auto [inside, beyond] = nodes;
+        velocity[beyond] = mirrored(velocity[inside], mirror);
+        fluid_velocity[beyond] = mirrored(fluid_velocity[inside], even);
+        flux[beyond] = mirrored(flux[inside], even);
+        rates[beyond] = rates[inside];
+        evening[beyond] = evening[inside];
     });
     if constexpr (exchanges) mirror_solutes();
 }

@@ -21,6 +21,7 @@
 #include "motion/explicit/node_solutes.hpp"
 #include "motion/explicit/walled_grid.hpp"
 
+#include <algorithm>
 #include <type_traits>
 #include <vector>
 
@@ -75,23 +76,14 @@ struct GasMeans {
 struct NodeGas {
     std::vector<NodeMomentum> momentum;    ///< more: less the sum of V_g N div F, kg/s
     std::vector<double> weight;            ///< sum of N times what points share their gas by, m2
-    std::vector<NodeVector> velocity;      ///< m/s
-    std::vector<NodeVector> flux;          ///< through the solid, kg/(m2 s) of the gas's own area
     std::vector<NodeGradients> gradients;  ///< of the gas: V_g in place of V, psi in place of the whole pressure
     std::vector<GasMeans> means;           ///< of the points
     std::vector<double> returned;          ///< F_j . e_j and what crosses the surface, kg/s
-    std::vector<NodeVector>
-        rates;  ///< x, gain that points share by weight, kg/(m2 s); y, loss that they share by their gas, 1/s
-    std::vector<NodeVector> evening;  ///< of the points' psi: x, kg/s per weight and J/kg; y, times the node's
-    double density = 0;               ///< at no gauge pressure, kg/m3
-    double specific = 0;              ///< R T / M, J/kg
+    double density = 0;                    ///< at no gauge pressure, kg/m3
+    double specific = 0;                   ///< R T / M, J/kg
     double escaped = 0;  ///< through the surface in the steps ended, kg; with exchange, air alone, in the liquid too
 
     void resize(size_t nodes);
-    void clear_flow(size_t node);
-
-    // Of both fluids, as points read them.
-    std::vector<NodePairOfVectors> velocities, fluxes, evenings, both_rates;
 };
 
 /// How the gas at a node answers to forces on it: v_g' = (v_g + response force + drag v_s') / (1 + drag).
@@ -114,10 +106,16 @@ struct OpenSurface {
     double room = 0;    ///< in nodes that could take more, kg/s
 };
 
+struct EdgeNode {
+    size_t node;
+    double facing_up;  ///< m
+};
+
 /// `exchanges`: water evaporates into the gas, air dissolves in the liquid.
 template <bool has_gas, bool exchanges = false>
 struct GridMixture : WalledGrid {
     using Means = std::conditional_t<has_gas, NodeMeansBesideGas, NodeMeans>;
+    using Fluids = NodeFluids<has_gas>;
 
     double gravity = 0;         ///< m/s2, downwards
     double liquid_density = 0;  ///< kg/m3
@@ -135,15 +133,18 @@ struct GridMixture : WalledGrid {
 
     std::vector<NodeMomentum> momentum;         ///< of the solid; more: sum of m div v
     std::vector<NodeMomentum> liquid_momentum;  ///< more: less the sum of V N div F, kg/s
-    std::vector<NodeVector> velocity, liquid_velocity;
-    std::vector<NodeVector> flux;  ///< F, of water through the solid, kg/(m2 s)
-    std::vector<NodeVector>
-        rates;  ///< that points share: x, volumetric strain, 1/s; y, water gained, kg/s per kg of solid
-    std::vector<NodeVector> force;  ///< of the total stress, and the weight
+    std::vector<NodeVector> velocity;           ///< of the solid, m/s
+    std::vector<Fluids> fluid_velocity;         ///< m/s
+    std::vector<Fluids> flux;                   ///< F, through the solid, kg/(m2 s); the gas's of its own area
+    /// That points share. Liquid: x, volumetric strain, 1/s; y, water gained, kg/s per kg of solid. Gas: x, gain that they share by weight,
+    /// kg/(m2 s); y, loss that they share by their gas, 1/s.
+    std::vector<Fluids> rates;
+    /// Of the points' heads: x, kg/s per kg of solid and Pa; y, times the node's. Of their psi: x, kg/s per weight and J/kg; y, times the node's.
+    std::vector<Fluids> evening;
+    std::vector<NodeVector> force;  ///< of the total stress, and of the weight what mirrors change
     std::vector<NodeGradients> gradients;
     std::vector<Means> means;
-    std::vector<NodeVector> evening;  ///< of the points' heads: x, kg/s per kg of solid and Pa; y, times the node's
-    std::vector<double> returned;     ///< F_j . e_j and what crosses the surface, kg/s
+    std::vector<double> returned;  ///< F_j . e_j and what crosses the surface, kg/s
     std::vector<double> capacity;  ///< of the edge at no pressure there to let water in, kg/s; negative: it comes out
     std::vector<double> rain;      ///< onto each column of the grid that holds ground, kg/(m2 s); empty: none
     double flow_time = 0;          ///< s that the rates of water are of: what points have not got yet
@@ -164,16 +165,19 @@ struct GridMixture : WalledGrid {
 
 private:
     [[nodiscard]] bool is_at_edge(size_t node) const;
+    void fold_momenta();
     void fold_forces();
-    [[nodiscard]] double facing_up(size_t node) const;
-    void find_surface_widths();
-    [[nodiscard]] double falls_on(size_t node) const;
+    void clear_sums(size_t node);
+    [[nodiscard]] double facing_up(size_t node) const { return std::max(gradients[node].edge_y, 0.0); }  // at the edge
+    void find_surface();
+    [[nodiscard]] double falls_on(size_t node, double up) const;
     void cross_surface(double dt);
-    [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
+    [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt) requires has_gas;
     void solve(size_t node, double dt);
     [[nodiscard]] double wetted_share(size_t node) const;
     [[nodiscard]] double gas_distance(size_t node, const GroundEdge& edge) const;
-    void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed);
+    void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
+                 const NodeVector& pushed) requires has_gas;
     void mirror();
     void fold_solutes();
     void fold_solute_means();
@@ -184,6 +188,7 @@ private:
     void mirror_solutes();
 
     std::vector<OpenSurface> surfaces_;  // one a column
+    std::vector<EdgeNode> edge_;         // of the ground
 };
 
 // grid_solutes.cpp

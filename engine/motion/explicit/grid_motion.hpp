@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace talus {
@@ -28,6 +29,19 @@ inline double dot(const NodeVector& a, const NodeVector& b) { return a.x * b.x +
 struct NodePairOfVectors {
     NodeVector liquid, gas;
 };
+
+/// A node's fluids: a liquid, or a liquid and a gas that moves.
+template <bool has_gas>
+using NodeFluids = std::conditional_t<has_gas, NodePairOfVectors, NodeVector>;
+inline NodeVector& liquid_of(NodeVector& liquid) { return liquid; }
+inline NodeVector& liquid_of(NodePairOfVectors& fluids) { return fluids.liquid; }
+
+inline NodeVector mirrored(const NodeVector& vector, const Mirror& mirror) {
+    return {mirror.x * vector.x, mirror.y * vector.y};
+}
+inline NodePairOfVectors mirrored(const NodePairOfVectors& vectors, const Mirror& mirror) {
+    return {mirrored(vectors.liquid, mirror), mirrored(vectors.gas, mirror)};
+}
 
 /// What a wall mirrors adds to a vector inside.
 template <class Vector>
@@ -75,7 +89,7 @@ struct GridMotion : WalledGrid {
     double start_speed = 0;              ///< likewise, from its start
     std::vector<NodeMomentum> momentum;  ///< of the points where they came to lie
     std::vector<NodeVector> velocity;
-    std::vector<NodeVector> force;  ///< the weight at first, then the stress's too, N
+    std::vector<NodeVector> force;  ///< the weight at first, then the stress's too
     std::vector<NodeMomentum>
         held;  ///< of points that are held: the mass, and x, y, force of their stress and weight, N; empty: none
 

@@ -38,11 +38,6 @@ NodeVector shared(double gain, double held, double weight) {
     return {weight > 0 ? gain / weight : 0.0, 0};
 }
 
-NodePairOfVectors mirrored(const NodePairOfVectors& vectors, const Mirror& mirror) {
-    return {{mirror.x * vectors.liquid.x, mirror.y * vectors.liquid.y},
-            {mirror.x * vectors.gas.x, mirror.y * vectors.gas.y}};
-}
-
 }  // namespace
 
 void NodeSolutes::resize(size_t nodes) {
@@ -72,7 +67,7 @@ void GridMixture<true, true>::lose(const SoluteReturn& rate) {
 
 template <>
 void GridMixture<true, true>::fold_solutes() {
-    for_each_even_mirror([this](NodePair nodes, const Mirror&) {
+    for_each_two_mirrors([this](NodePair nodes, const Mirror&, const Mirror&) {
         SoluteGains &inside = solutes.gains[nodes.inside], &beyond = solutes.gains[nodes.beyond];
         inside.dissolved += beyond.dissolved;
         inside.dissolved_gain += beyond.dissolved_gain;
@@ -84,7 +79,7 @@ void GridMixture<true, true>::fold_solutes() {
 
 template <>
 void GridMixture<true, true>::fold_solute_means() {
-    for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
+    for_each_two_mirrors([this](NodePair nodes, const Mirror&, const Mirror& mirror) {
         SoluteGradients &inside = solutes.gradients[nodes.inside], &beyond = solutes.gradients[nodes.beyond];
         add_mirrored(inside.dissolved, mirror, beyond.dissolved);
         add_mirrored(inside.vapour, mirror, beyond.vapour);
@@ -130,13 +125,13 @@ template <>
 void GridMixture<true, true>::carry_dissolved(size_t node, const GroundEdge& edge, double dt) {
     const SoluteMeans& mean = solutes.means[node];
     const double mass = momentum[node].mass, fraction = mean.dissolved / mass;
-    const Carrier liquid{flux[node], {gradients[node].edge_x, gradients[node].edge_y}, means[node].volume, mass};
+    const Carrier liquid{flux[node].liquid, {gradients[node].edge_x, gradients[node].edge_y}, means[node].volume, mass};
     const double diffusion = solutes.air_diffusivity * mean.dissolved_spread / liquid.volume;
     const Carried air = carry(fraction, solutes.gradients[node].dissolved, diffusion, liquid, edge, grid.cell_size);
     solutes.fluxes[node].liquid = air.flux;
     solutes.mixings[node].liquid = air.mixing;
-    solutes.evenings[node].liquid = {fraction * evening[node].x, fraction * evening[node].y};
-    const double crossing = solutes.outer_air * (returned[node] - dot(flux[node], liquid.outwards));
+    solutes.evenings[node].liquid = {fraction * evening[node].liquid.x, fraction * evening[node].liquid.y};
+    const double crossing = solutes.outer_air * (returned[node] - dot(liquid.flux, liquid.outwards));
     solutes.returned[node].dissolved = dot(air.flux, liquid.outwards) + crossing;
     returned[node] += crossing;
     gas.escaped -= dt * crossing;
@@ -149,12 +144,12 @@ void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, 
     if (!(content > least_gas_share)) return;
     const SoluteMeans& mean = solutes.means[node];
     const double fraction = mean.vapour / volume;
-    const Carrier fluid{gas.flux[node], {gas.gradients[node].edge_x, gas.gradients[node].edge_y}, volume, volume};
+    const Carrier fluid{flux[node].gas, {gas.gradients[node].edge_x, gas.gradients[node].edge_y}, volume, volume};
     const double diffusion = solutes.vapour_diffusivity * mean.vapour_spread / volume;
     const Carried vapour = carry(fraction, solutes.gradients[node].vapour, diffusion, fluid, edge, grid.cell_size);
     solutes.fluxes[node].gas = vapour.flux;
     solutes.mixings[node].gas = vapour.mixing;
-    solutes.evenings[node].gas = {fraction * gas.evening[node].x, fraction * gas.evening[node].y};
+    solutes.evenings[node].gas = {fraction * evening[node].gas.x, fraction * evening[node].gas.y};
     const double crossing = gas.returned[node] - dot(fluid.flux, fluid.outwards);
     double inflow = crossing * (crossing > 0 ? solutes.outer_vapour : fraction);
     if (edge.distance > 0) {
@@ -168,7 +163,7 @@ void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, 
 
 template <>
 void GridMixture<true, true>::mirror_solutes() {
-    for_each_even_mirror([this](NodePair nodes, const Mirror& mirror) {
+    for_each_two_mirrors([this](NodePair nodes, const Mirror&, const Mirror& mirror) {
         solutes.fluxes[nodes.beyond] = mirrored(solutes.fluxes[nodes.inside], mirror);
         for (auto* field : {&solutes.evenings, &solutes.mixings, &solutes.rates})
             (*field)[nodes.beyond] = (*field)[nodes.inside];

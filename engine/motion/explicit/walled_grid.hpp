@@ -4,6 +4,7 @@
 #include "background/grid.hpp"
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -48,6 +49,8 @@ struct Mirror {
     double x, y;
 };
 
+inline Mirror even_mirror(size_t axis) { return axis == 0 ? Mirror{-1, 1} : Mirror{1, -1}; }
+
 struct WalledGrid {
     Grid grid;
     Walls walls;
@@ -84,9 +87,9 @@ struct WalledGrid {
     template <class Use>
     void for_each_mirror(const Use& use) const;
 
-    /// The same with every wall as a roller: what water and scalars see.
+    /// use(nodes, mirror, even), where no wall has friction: `even` is what water and scalars see, to which every wall is a roller.
     template <class Use>
-    void for_each_even_mirror(const Use& use) const;
+    void for_each_two_mirrors(const Use& use) const;
 };
 
 template <class Use>
@@ -156,18 +159,18 @@ template <class Use>
 void WalledGrid::for_each_mirror(const Use& use) const {
     for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
         if (wall.kind != WallKind::roller && wall.kind != WallKind::fixed) return;
-        const Mirror turned = axis == 0 ? Mirror{-1, 1} : Mirror{1, -1};
-        const Mirror mirror = wall.kind == WallKind::fixed ? Mirror{-1, -1} : turned;
+        const Mirror mirror = wall.kind == WallKind::fixed ? Mirror{-1, -1} : even_mirror(axis);
         for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror); });
     });
 }
 
 template <class Use>
-void WalledGrid::for_each_even_mirror(const Use& use) const {
+void WalledGrid::for_each_two_mirrors(const Use& use) const {
     for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
         if (wall.kind == WallKind::none) return;
-        const Mirror mirror = axis == 0 ? Mirror{-1, 1} : Mirror{1, -1};
-        for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror); });
+        assert(wall.kind != WallKind::friction);
+        const Mirror even = even_mirror(axis), mirror = wall.kind == WallKind::fixed ? Mirror{-1, -1} : even;
+        for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror, even); });
     });
 }
 
