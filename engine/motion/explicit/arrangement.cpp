@@ -13,9 +13,6 @@ constexpr int32_t margin =
 
 }  // namespace
 
-Arrangement::Arrangement(int32_t threads)
-    : threads_(threads > 1 ? std::make_unique<tbb::task_arena>(threads) : nullptr) {}
-
 bool Arrangement::bears(double cells) { return cells <= margin; }
 
 bool Arrangement::is_outgrown(double cells) const { return drift_ + cells > margin; }

@@ -9,15 +9,14 @@
 
 #include "background/grid.hpp"
 #include "motion/explicit/grid_motion.hpp"
+#include "motion/explicit/threads.hpp"
 #include "points/free_points.hpp"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <utility>
 #include <vector>
 
 namespace talus {
@@ -29,7 +28,8 @@ struct Strip {
 
 class Arrangement {
 public:
-    explicit Arrangement(int32_t threads);
+    explicit Arrangement(Threads threads) : threads_(std::move(threads)) {}
+    [[nodiscard]] const Threads& threads() const { return threads_; }
 
     /// Arranges points, and gives the grid room about them, by whole cells; it only grows. True: it grew, and what nodes hold must move.
     bool arrange(FreePoints& points, Grid& grid);
@@ -65,7 +65,7 @@ private:
     [[nodiscard]] std::vector<bool> find_quiet(const FreePoints& points, int32_t substeps) const;
     void find_spans(const FreePoints& points, const Grid& grid);
 
-    std::unique_ptr<tbb::task_arena> threads_;  // empty: this one alone
+    Threads threads_;
     size_t strips_ = 0, regions_a_strip_ = 0;
     std::vector<Region> regions_;
     std::vector<Span> spans_;
@@ -85,12 +85,7 @@ void Arrangement::for_each_strip(const Handle& handle) const {
     };
     for (const size_t parity : {size_t{0}, size_t{1}}) {
         const size_t strips = (strips_ + 1 - parity) / 2;
-        const auto handle_one = [&](size_t s) { handle_runs(2 * s + parity); };
-        if (!threads_) {
-            for (size_t s = 0; s < strips; ++s) handle_one(s);
-        } else {
-            threads_->execute([&] { tbb::parallel_for(size_t{0}, strips, handle_one); });
-        }
+        threads_.for_each(strips, [&](size_t s) { handle_runs(2 * s + parity); });
     }
 }
 

@@ -47,12 +47,13 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
       water_(water),
       points_(std::move(points)),
       gas_(gas),
-      arrangement_(threads) {
+      arrangement_(Threads(threads)) {
     for (const ExplicitSoil& soil : soils_) {
         yields_ = yields_ || soil.yields;
         is_inertial_ = is_inertial_ || soil.friction_rise > 0;
     }
     for (const ExplicitHydraulics& soil : hydraulics_) grain_volume_.push_back(1 / soil.grain_density);
+    nodes_.threads = arrangement_.threads();
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
     nodes_.gravity = gravity;

@@ -14,12 +14,13 @@ constexpr int32_t quiet_substeps = 1000;  // a wave has crossed some 500 cells
 
 ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
                                FreePoints points, int32_t threads, double rest_speed)
-    : soils_(std::move(soils)), points_(std::move(points)), arrangement_(threads), rest_speed_(rest_speed) {
+    : soils_(std::move(soils)), points_(std::move(points)), arrangement_(Threads(threads)), rest_speed_(rest_speed) {
     if (rest_speed > 0) points_.quiet.resize(points_.count);
     for (const ExplicitSoil& soil : soils_) {
         yields_ = yields_ || soil.yields;
         is_inertial_ = is_inertial_ || soil.friction_rise > 0;
     }
+    nodes_.threads = arrangement_.threads();
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
     nodes_.gravity = gravity;

@@ -78,37 +78,51 @@ void GridMixture<has_gas, exchanges>::fold_momenta() {
     });
 }
 
+/// Velocities and rates of a node from what the points gave. `part` gets what has left with the surface: what came to a node that the last point has left.
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::start(size_t node, Part& part) {
+    const NodeMomentum &solid = momentum[node], &liquid = liquid_momentum[node];
+    if (!(solid.mass > 0)) {
+        part.seepage += flow_time * returned[node];
+        returned[node] = 0;
+    }
+    const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
+    const NodeVector velocity_of_solid{solid.x * inverse, solid.y * inverse};
+    const auto velocity_of = [&](const NodeMomentum& fluid) {
+        return fluid.mass > 0 ? NodeVector{fluid.x / fluid.mass, fluid.y / fluid.mass} : velocity_of_solid;
+    };
+    velocity[node] = velocity_of_solid;
+    part.bound.add(solid.mass, velocity_of_solid);
+    liquid_of(fluid_velocity[node]) = velocity_of(liquid);
+    liquid_of(rates[node]) = {solid.more * inverse, (liquid.more + returned[node]) * inverse};
+    if constexpr (has_gas) {
+        const NodeMomentum& own = gas.momentum[node];
+        fluid_velocity[node].gas = velocity_of(own);
+        const double gain = own.more + gas.returned[node];
+        const bool loses = gain < 0 && own.mass > 0;
+        rates[node].gas = {};
+        if (loses) rates[node].gas.y = gain / own.mass;
+        if (!loses && gas.weight[node] > 0) rates[node].gas.x = gain / gas.weight[node];
+        if (!loses && !(gas.weight[node] > 0)) part.escaped += flow_time * gain;
+    }
+}
+
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::begin_step() {
     fold_momenta();
     if constexpr (exchanges) fold_solutes();
-    SpeedBound bound(least_mass);
-    for_each_node([this, &bound](size_t i) {
-        const NodeMomentum &solid = momentum[i], &liquid = liquid_momentum[i];
-        if (!(solid.mass > 0)) {  // the last point has left: what came to its node has left with the surface
-            seepage += flow_time * returned[i];
-            returned[i] = 0;
-        }
-        const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
-        const NodeVector start{solid.x * inverse, solid.y * inverse};
-        velocity[i] = start;
-        bound.add(solid.mass, start);
-        const auto velocity_of = [&start](const NodeMomentum& fluid) {
-            return fluid.mass > 0 ? NodeVector{fluid.x / fluid.mass, fluid.y / fluid.mass} : start;
-        };
-        liquid_of(fluid_velocity[i]) = velocity_of(liquid);
-        liquid_of(rates[i]) = {solid.more * inverse, (liquid.more + returned[i]) * inverse};
-        if constexpr (has_gas) {
-            const NodeMomentum& own = gas.momentum[i];
-            fluid_velocity[i].gas = velocity_of(own);
-            const double gain = own.more + gas.returned[i];
-            const bool loses = gain < 0 && own.mass > 0;
-            rates[i].gas = {};
-            if (loses) rates[i].gas.y = gain / own.mass;
-            if (!loses && gas.weight[i] > 0) rates[i].gas.x = gain / gas.weight[i];
-            if (!loses && !(gas.weight[i] > 0)) gas.escaped += flow_time * gain;
-        }
+    parts_.resize(parts(), Part{SpeedBound(least_mass)});
+    threads.for_each(parts(), [this](size_t number) {
+        Part part{SpeedBound(least_mass)};
+        for_each_node_of(number, [&](size_t i) { start(i, part); });
+        parts_[number].take_sums(part);
     });
+    SpeedBound bound(least_mass);
+    for (const Part& part : parts_) {
+        bound.add(part.bound);
+        seepage += part.seepage;
+        gas.escaped += part.escaped;
+    }
     start_speed = bound.value();
     if constexpr (exchanges) find_solute_rates();
     mirror();
@@ -117,13 +131,15 @@ void GridMixture<has_gas, exchanges>::begin_step() {
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::end_step(double dt) {
     fold_forces();
+    solve_inner_nodes(dt);
     find_surface();
     SpeedBound bound(least_mass);
-    for_each_node([this, dt, &bound](size_t i) {
-        solve(i, dt);
-        bound.add(momentum[i].mass, velocity[i]);
-        if constexpr (!exchanges) clear_sums(i);
-    });
+    for (const Part& part : parts_) bound.add(part.bound);
+    for (const auto [node, up] : edge_) {
+        solve(node, dt);
+        bound.add(momentum[node].mass, velocity[node]);
+        if constexpr (!exchanges) clear_sums(node);
+    }
     speed = bound.value();
     if (!immersed) cross_surface(dt);
     if constexpr (exchanges) {
@@ -189,17 +205,34 @@ double GridMixture<has_gas, exchanges>::total(const std::vector<double>& values)
     return sum;
 }
 
+/// Those at the edge are left: few, and they share the surface.
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::solve_inner_nodes(double dt) {
+    threads.for_each(parts(), [this, dt](size_t part) {
+        SpeedBound bound(least_mass);
+        std::vector<EdgeNode>& edge = parts_[part].edge;
+        edge.clear();
+        for_each_node_of(part, [&](size_t i) {
+            if (is_at_edge(i)) {
+                edge.push_back({i, facing_up(i)});
+                return;
+            }
+            solve(i, dt);
+            bound.add(momentum[i].mass, velocity[i]);
+            if constexpr (!exchanges) clear_sums(i);
+        });
+        parts_[part].bound = bound;
+    });
+}
+
 /// The nodes at the edge, and how wide that is in each column where it faces up.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::find_surface() {
     const auto columns = static_cast<size_t>(grid.cells[0]);
     surfaces_.assign(columns, {});
     edge_.clear();
-    for_each_node([&](size_t i) {
-        if (!is_at_edge(i)) return;
-        edge_.push_back({i, facing_up(i)});
-        surfaces_[i % columns].width += facing_up(i);
-    });
+    for (const Part& part : parts_) edge_.insert(edge_.end(), part.edge.begin(), part.edge.end());
+    for (const auto [node, up] : edge_) surfaces_[node % columns].width += up;
 }
 
 /// Rain on a node whose edge faces up by so many metres, kg/s.

@@ -164,11 +164,25 @@ struct GridMixture : WalledGrid {
                   rate);  ///< of water and gas counted as lost in the last step, so much is air and vapour, kg/s
 
 private:
+    /// What a part of the grid adds to the whole's.
+    struct Part {
+        SpeedBound bound;
+        double seepage = 0, escaped = 0;  // kg
+        std::vector<EdgeNode> edge{};
+
+        void take_sums(const Part& sums) {
+            bound = sums.bound;
+            seepage = sums.seepage;
+            escaped = sums.escaped;
+        }
+    };
     [[nodiscard]] bool is_at_edge(size_t node) const;
     void fold_momenta();
+    void start(size_t node, Part& part);
     void fold_forces();
     void clear_sums(size_t node);
     [[nodiscard]] double facing_up(size_t node) const { return std::max(gradients[node].edge_y, 0.0); }  // at the edge
+    void solve_inner_nodes(double dt);
     void find_surface();
     [[nodiscard]] double falls_on(size_t node, double up) const;
     void cross_surface(double dt);
@@ -187,6 +201,7 @@ private:
     void carry_vapour(size_t node, const GroundEdge& edge, double dt);
     void mirror_solutes();
 
+    std::vector<Part> parts_;
     std::vector<OpenSurface> surfaces_;  // one a column
     std::vector<EdgeNode> edge_;         // of the ground
 };

@@ -19,21 +19,33 @@ void GridMotion::mirror() {
     });
 }
 
-void GridMotion::begin_step() {
-    for_each_node([this](size_t i) { force[i] = {0, -gravity * momentum[i].mass}; });
-    for_each_mirror([this](NodePair nodes, const Mirror& sign) {
-        move_inside(momentum[nodes.inside], momentum[nodes.beyond], sign);
-        add_mirrored(force[nodes.inside], sign, force[nodes.beyond]);
-        force[nodes.beyond] = {};
-    });
+double GridMotion::bound_of_speed() {
     SpeedBound bound(least_mass);
-    for_each_node([this, &bound](size_t i) {
-        if (!held.empty() && momentum[i].mass > 0) momentum[i].mass += held[i].mass;
-        const double inverse = momentum[i].mass > 0 ? 1 / momentum[i].mass : 0;
-        velocity[i] = {momentum[i].x * inverse, momentum[i].y * inverse};
-        bound.add(momentum[i].mass, velocity[i]);
+    for (const SpeedBound& part : bounds_) bound.add(part);
+    return bound.value();
+}
+
+void GridMotion::begin_step() {
+    bounds_.assign(parts(), SpeedBound(least_mass));
+    for_each_mirror([this](NodePair nodes, const Mirror& sign) {
+        add_mirrored(force[nodes.inside], sign, force[nodes.beyond]);
+        // The weight is mirrored as any force: where the wall turns it about, that is twice of it more than the weight of the mass inside.
+        force[nodes.inside].y += (1 - sign.y) * gravity * momentum[nodes.beyond].mass;
+        force[nodes.beyond] = {};
+        move_inside(momentum[nodes.inside], momentum[nodes.beyond], sign);
     });
-    start_speed = bound.value();  // walls make no node faster
+    threads.for_each(parts(), [this](size_t part) {
+        SpeedBound bound(least_mass);
+        for_each_node_of(part, [&](size_t i) {
+            force[i].y -= gravity * momentum[i].mass;
+            if (!held.empty() && momentum[i].mass > 0) momentum[i].mass += held[i].mass;
+            const double inverse = momentum[i].mass > 0 ? 1 / momentum[i].mass : 0;
+            velocity[i] = {momentum[i].x * inverse, momentum[i].y * inverse};
+            bound.add(momentum[i].mass, velocity[i]);
+        });
+        bounds_[part] = bound;
+    });
+    start_speed = bound_of_speed();  // walls make no node faster
     slide(false);
     mirror();
 }
@@ -41,20 +53,26 @@ void GridMotion::begin_step() {
 void GridMotion::end_step(double dt) {
     for_each_mirror(
         [this](NodePair nodes, const Mirror& sign) { add_mirrored(force[nodes.inside], sign, force[nodes.beyond]); });
-    for_each_node([this, dt](size_t i) {
-        const double response = momentum[i].mass > 0 ? dt / momentum[i].mass : 0;
-        if (!held.empty()) force[i] = {force[i].x + held[i].x, force[i].y + held[i].y};
-        velocity[i].x += response * force[i].x;
-        velocity[i].y += response * force[i].y;
+    threads.for_each(parts(), [this, dt](size_t part) {
+        for_each_node_of(part, [&](size_t i) {
+            const double response = momentum[i].mass > 0 ? dt / momentum[i].mass : 0;
+            if (!held.empty()) force[i] = {force[i].x + held[i].x, force[i].y + held[i].y};
+            velocity[i].x += response * force[i].x;
+            velocity[i].y += response * force[i].y;
+        });
     });
     slide(true);
     mirror();
-    SpeedBound bound(least_mass);
-    for_each_node([this, &bound](size_t i) {
-        bound.add(momentum[i].mass, velocity[i]);
-        momentum[i] = {};
+    threads.for_each(parts(), [this](size_t part) {
+        SpeedBound bound(least_mass);
+        for_each_node_of(part, [&](size_t i) {
+            bound.add(momentum[i].mass, velocity[i]);
+            momentum[i] = {};
+            force[i] = {};
+        });
+        bounds_[part] = bound;
     });
-    speed = bound.value();
+    speed = bound_of_speed();
 }
 
 void GridMotion::slide(bool with_friction) {

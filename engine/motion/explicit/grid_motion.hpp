@@ -72,6 +72,10 @@ public:
         largest_ = std::max(largest_, square);
         sum_ += square;
     }
+    void add(const SpeedBound& other) {
+        largest_ = std::max(largest_, other.largest_);
+        sum_ += other.sum_;
+    }
     /// m/s; no number where a velocity is none.
     [[nodiscard]] double value() const {
         return std::isfinite(sum_) ? (1 + 9 * light_share) * std::sqrt(largest_) : sum_;
@@ -100,10 +104,13 @@ struct GridMotion : WalledGrid {
     void end_step(double dt);
 
 private:
+    [[nodiscard]] double bound_of_speed();
     void mirror();
     void slide(bool with_friction);
     void meet(const Corner& corner, bool with_friction);
     void meet(const Wall& wall, size_t axis, double outwards, NodePair nodes, bool with_friction);
+
+    std::vector<SpeedBound> bounds_;  // one a part of the grid
 };
 
 }  // namespace talus

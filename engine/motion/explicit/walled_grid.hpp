@@ -2,7 +2,9 @@
 #pragma once
 
 #include "background/grid.hpp"
+#include "motion/explicit/threads.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstddef>
@@ -55,6 +57,7 @@ struct WalledGrid {
     Grid grid;
     Walls walls;
     std::vector<Span> spans;  ///< one a row: outside them all is zero
+    Threads threads;
 
     /// No cells, their edges where the walls are.
     void start_grid() {
@@ -64,6 +67,12 @@ struct WalledGrid {
 
     template <class Use>
     void for_each_node(const Use& use) const;
+
+    /// Parts of the grid, of so many rows, are the same for any number of threads.
+    static constexpr size_t rows_a_part = 8;
+    [[nodiscard]] size_t parts() const { return (spans.size() + rows_a_part - 1) / rows_a_part; }
+    template <class Use>
+    void for_each_node_of(size_t part, const Use& use) const;
 
     /// The row or column of nodes inside a wall; -1 where no point is near.
     [[nodiscard]] int32_t line_at(const Wall& wall, size_t axis, int32_t inwards) const {
@@ -93,13 +102,19 @@ struct WalledGrid {
 };
 
 template <class Use>
-void WalledGrid::for_each_node(const Use& use) const {
+void WalledGrid::for_each_node_of(size_t part, const Use& use) const {
     const auto stride = static_cast<size_t>(grid.cells[0]);
-    for (size_t row = 0; row < spans.size(); ++row) {
+    const size_t last_row = std::min((part + 1) * rows_a_part, spans.size());
+    for (size_t row = part * rows_a_part; row < last_row; ++row) {
         const size_t first = row * stride + static_cast<size_t>(spans[row].first);
         const size_t last = row * stride + static_cast<size_t>(spans[row].last);
         for (size_t node = first; node < last; ++node) use(node);
     }
+}
+
+template <class Use>
+void WalledGrid::for_each_node(const Use& use) const {
+    for (size_t part = 0; part < parts(); ++part) for_each_node_of(part, use);
 }
 
 template <class Use>
