@@ -141,13 +141,13 @@ def column_rows():
 
 
 def three_phase_column_rows():
-    """The paper's column where air can leave through the wet surface alone, on 50 cells."""
+    """The paper's column where air can leave through the wet surface alone, on 100 cells."""
     reference = read_csv("column_three_phase.csv")
     source = "column_three_phase.csv, independent finite volumes on 1600 cells"
     scales = {"pressure": ("water_pressure_Pa", 37975.0), "gas_pressure": ("gas_pressure_Pa", reference["gas_pressure_Pa"].max()),
               "saturation": ("saturation", 1.0)}
     with Clock() as clock:
-        profiles = histories("column_three_phase", 50)
+        profiles = histories("column_three_phase", 100)
     for profile in profiles:
         time = int(profile["time"])
         at = reference["time_s"] == time

@@ -87,17 +87,17 @@ void GridMixture<has_gas, exchanges>::start(size_t node, Part& part) {
         returned[node] = 0;
     }
     const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
-    const NodeVector velocity_of_solid{solid.x * inverse, solid.y * inverse};
-    const auto velocity_of = [&](const NodeMomentum& fluid) {
-        return fluid.mass > 0 ? NodeVector{fluid.x / fluid.mass, fluid.y / fluid.mass} : velocity_of_solid;
+    const NodeVector with_solid = velocity_of(solid.x, solid.y, inverse);
+    const auto own_velocity = [&](const NodeMomentum& fluid) {
+        return fluid.mass > 0 ? velocity_of(fluid.x, fluid.y, 1 / fluid.mass) : with_solid;
     };
-    velocity[node] = velocity_of_solid;
-    part.bound.add(solid.mass, velocity_of_solid);
-    liquid_of(fluid_velocity[node]) = velocity_of(liquid);
+    velocity[node] = with_solid;
+    part.bound.add(solid.mass, with_solid);
+    liquid_of(fluid_velocity[node]) = own_velocity(liquid);
     liquid_of(rates[node]) = {solid.more * inverse, (liquid.more + returned[node]) * inverse};
     if constexpr (has_gas) {
         const NodeMomentum& own = gas.momentum[node];
-        fluid_velocity[node].gas = velocity_of(own);
+        fluid_velocity[node].gas = own_velocity(own);
         const double gain = own.more + gas.returned[node];
         const bool loses = gain < 0 && own.mass > 0;
         rates[node].gas = {};
@@ -276,7 +276,7 @@ void GridMixture<has_gas, exchanges>::cross_surface(double dt) {
 
 /// How the gas at a node answers to forces.
 template <bool has_gas, bool exchanges>
-GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt) requires has_gas {
+GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt) {
     const double volume = means[node].volume, mass = gas.momentum[node].mass;
     const GasMeans& mean = gas.means[node];
     GasAnswer answer;
@@ -292,9 +292,8 @@ GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt)
     answer.density = mass / mean.volume;
     answer.response = dt / mean.volume;
     answer.moved = mass / (1 + answer.drag);
-    const double spread = answer.moved * dt / (cell_volume() * mean.volume);
+    answer.spread = answer.moved * dt / (cell_volume() * mean.volume);
     answer.evened = smoothing * answer.moved * dt / (mean.volume * mean.volume);
-    evening[node].gas = {spread, spread * answer.push};
     return answer;
 }
 
@@ -335,6 +334,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     [[maybe_unused]] GasAnswer answer;
     if constexpr (has_gas) {
         answer = answer_of_gas(node, dt);
+        evening[node].gas = {answer.spread, answer.spread * answer.push};
         weight += gravity * gas.momentum[node].mass;
     }
     NodeVector &solid = velocity[node], &liquid = liquid_of(fluid_velocity[node]), &through = liquid_of(flux[node]);
@@ -402,7 +402,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
         returned[node] - (conductance / mean.volume - evened) * dot(edge.stretched(pushed), outwards);
     const double drawn = edge_conductance * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
-    if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed);
+    if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed, flux[node].gas);
 }
 
 /// Of what the edge can take, what rain offers; all where water comes out.
@@ -427,14 +427,14 @@ double GridMixture<has_gas, exchanges>::gas_distance(size_t node, const GroundEd
 /// edge changes no psi, whatever the step.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
-                                              const NodeVector& pushed) requires has_gas {
+                                              const NodeVector& pushed, const NodeVector& through) {
     if (!(answer.density > 0)) return;
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
     const double conductance = dt * answer.moved / volume, driven = conductance / volume - answer.evened;
     const double outer_conductance =
         conductance * (1 + answer.drag) / (1 + answer.drag / (1 - 0.5 * wetted_share(node)));
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
-    const double carried = dot(flux[node].gas, outwards) - driven * dot(edge.stretched(pushed), outwards);
+    const double carried = dot(through, outwards) - driven * dot(edge.stretched(pushed), outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
     const double opening = outer_conductance * edge.length / gas_distance(node, edge);
     const double filling = dt * content * opening * gas.specific / gas.means[node].mass;

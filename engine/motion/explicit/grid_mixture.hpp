@@ -94,6 +94,7 @@ struct GasAnswer {
     double moved = 0;     ///< mass / (1 + drag), kg
     double density = 0;   ///< kg/m3
     double evened = 0;    ///< flux per force that evening out does, kg/(m2 s)
+    double spread = 0;    ///< what points even out per weight and psi, kg/s
 
     void choke(const NodeVector& relative_velocity, double most);
 };
@@ -186,12 +187,12 @@ private:
     void find_surface();
     [[nodiscard]] double falls_on(size_t node, double up) const;
     void cross_surface(double dt);
-    [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt) requires has_gas;
+    [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
     void solve(size_t node, double dt);
     [[nodiscard]] double wetted_share(size_t node) const;
     [[nodiscard]] double gas_distance(size_t node, const GroundEdge& edge) const;
-    void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
-                 const NodeVector& pushed) requires has_gas;
+    void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed,
+                 const NodeVector& through);
     void mirror();
     void fold_solutes();
     void fold_solute_means();

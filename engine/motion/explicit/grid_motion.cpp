@@ -40,7 +40,7 @@ void GridMotion::begin_step() {
             force[i].y -= gravity * momentum[i].mass;
             if (!held.empty() && momentum[i].mass > 0) momentum[i].mass += held[i].mass;
             const double inverse = momentum[i].mass > 0 ? 1 / momentum[i].mass : 0;
-            velocity[i] = {momentum[i].x * inverse, momentum[i].y * inverse};
+            velocity[i] = velocity_of(momentum[i].x, momentum[i].y, inverse);
             bound.add(momentum[i].mass, velocity[i]);
         });
         bounds_[part] = bound;

@@ -36,6 +36,14 @@ using NodeFluids = std::conditional_t<has_gas, NodePairOfVectors, NodeVector>;
 inline NodeVector& liquid_of(NodeVector& liquid) { return liquid; }
 inline NodeVector& liquid_of(NodePairOfVectors& fluids) { return fluids.liquid; }
 
+/// A momentum's velocity; speeds below any that matters are none: between walls they halve in every step, down to numbers below 2e-308, which processors
+/// are slow with.
+inline NodeVector velocity_of(double x, double y, double per_mass) {
+    constexpr double least = 1e-100;  // m/s
+    const double along_x = x * per_mass, along_y = y * per_mass;
+    return {std::abs(along_x) < least ? 0 : along_x, std::abs(along_y) < least ? 0 : along_y};
+}
+
 inline NodeVector mirrored(const NodeVector& vector, const Mirror& mirror) {
     return {mirror.x * vector.x, mirror.y * vector.y};
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -122,17 +123,22 @@ void WalledGrid::for_each_pair(const Wall& wall, size_t axis, int32_t inwards, c
     const auto stride = static_cast<size_t>(grid.cells[0]);
     const int32_t line = line_at(wall, axis, inwards);
     if (line < 0) return;
+    // g++ 12 was seen to clear the nodes beyond a wall, all at once, before they were read. One pair after the other:
+    const auto use_in_turn = [&](NodePair nodes) {
+        use(nodes);
+        std::atomic_signal_fence(std::memory_order_seq_cst);
+    };
     const auto inside = static_cast<size_t>(line);
     if (axis == 1) {
         for (auto column = static_cast<size_t>(spans[inside].first); column < static_cast<size_t>(spans[inside].last);
              ++column)
-            use(NodePair{inside * stride + column, (inwards > 0 ? inside - 1 : inside + 1) * stride + column});
+            use_in_turn({inside * stride + column, (inwards > 0 ? inside - 1 : inside + 1) * stride + column});
         return;
     }
     for (size_t row = 0; row < spans.size(); ++row) {
         if (line < spans[row].first || line >= spans[row].last) continue;
         const size_t node = row * stride + inside;
-        use(NodePair{node, inwards > 0 ? node - 1 : node + 1});
+        use_in_turn({node, inwards > 0 ? node - 1 : node + 1});
     }
 }
 
