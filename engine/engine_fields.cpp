@@ -201,18 +201,13 @@ void Engine::State::sample_cell(const FieldView& field, const CellPlace& place, 
             return;
         }
         const std::string_view name = field.name;
-        if (name == "saturation") {  // linear in the cell, like the pressure
-            const HydraulicTable& table = simulation->flow()->table(static_cast<size_t>(mesh.cell_soil[cell]));
-            values[0] = 0;
-            for (size_t a = 0; a < Shape::nodes; ++a) {
-                const auto node = static_cast<size_t>(mesh.cell_nodes[static_cast<size_t>(first) + a]);
-                values[0] += share[a] * table.at(simulation->state().flow.pressure[node]).saturation;
-            }
-            return;
-        }
-        if (name == "suction" || name == "point_pressure") {
+        // On one curve: between nodes on either side of a water table the saturation is far from linear.
+        if (name == "saturation" || name == "suction" || name == "point_pressure") {
             const double pressure = from_nodes(simulation->state().flow.pressure.data(), 1, 0);
-            values[0] = name == "suction" ? std::max(0.0, -pressure) : pressure;
+            const HydraulicTable& table = simulation->flow()->table(static_cast<size_t>(mesh.cell_soil[cell]));
+            values[0] = name == "saturation" ? table.at(pressure).saturation
+                        : name == "suction"  ? std::max(0.0, -pressure)
+                                             : pressure;
             return;
         }
         const auto row = static_cast<size_t>(simulation->state().points.cell_start[cell]);

@@ -88,6 +88,16 @@ TEST_CASE("friction slows a block as Coulomb has it") {
     CHECK(momentum / mass == doctest::Approx(2 - 0.3 * 9.81 * 0.4).epsilon(0.01));
 }
 
+TEST_CASE("motion between two walls fades to none, not to numbers that processors are slow with") {
+    const double cell_size = 0.1;
+    FreePoints points = block_of_points(cell_size, 0, 0, 1, 4);
+    std::fill_n(points[velocity_x], points.count, 1e-300);
+    const Walls walls{{WallKind::roller, 0, 0}, {WallKind::roller, cell_size, 0}, {WallKind::roller, 0, 0}};
+    ExplicitMotion motion(cell_size, walls, 0, {{elasticity(1e6, 0)}}, std::move(points), 1);
+    for (int step = 1; step <= 200; ++step) motion.step(1e-3, step == 200);
+    for (size_t p = 0; p < motion.points().count; ++p) CHECK(motion.points()[velocity_x][p] == 0);
+}
+
 TEST_CASE("ground that rubs on both walls of a corner gains no energy there") {
     const double cell_size = 0.25, poisson = 0.45;
     const Walls walls{{WallKind::friction, 0, 0.7}, {WallKind::friction, 2, 0.55}, {WallKind::friction, 0, 0.035}};
