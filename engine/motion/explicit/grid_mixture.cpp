@@ -58,17 +58,13 @@ void GridMixture<has_gas, exchanges>::resize() {
     if constexpr (exchanges) solutes.resize(nodes);
 }
 
-/// Momenta and masses beyond a wall come inside. Their weight is mirrored as any force: where the wall turns it about, that is twice of it more than the
-/// weight of the mass inside.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::fold_momenta() {
     for_each_two_mirrors([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
         const auto [inside, beyond] = nodes;
         double mass = momentum[beyond].mass + liquid_momentum[beyond].mass;
         if constexpr (has_gas) mass += gas.momentum[beyond].mass;
-        add_mirrored(force[inside], mirror, force[beyond]);
-        force[inside].y += (1 - mirror.y) * gravity * mass;
-        force[beyond] = {};
+        move_inside(force[inside], force[beyond], mirror, gravity * mass);
         move_inside(momentum[inside], momentum[beyond], mirror);
         move_inside(liquid_momentum[inside], liquid_momentum[beyond], even);
         if constexpr (has_gas) {
@@ -80,7 +76,7 @@ void GridMixture<has_gas, exchanges>::fold_momenta() {
 
 /// Velocities and rates of a node from what the points gave. `part` gets what has left with the surface: what came to a node that the last point has left.
 template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::start(size_t node, Part& part) {
+void GridMixture<has_gas, exchanges>::start(size_t node, PartSums& part) {
     const NodeMomentum &solid = momentum[node], &liquid = liquid_momentum[node];
     if (!(solid.mass > 0)) {
         part.seepage += flow_time * returned[node];
@@ -111,14 +107,14 @@ template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::begin_step() {
     fold_momenta();
     if constexpr (exchanges) fold_solutes();
-    parts_.resize(parts(), Part{SpeedBound(least_mass)});
+    part_sums_.assign(parts(), PartSums{SpeedBound(least_mass)});
     threads.for_each(parts(), [this](size_t number) {
-        Part part{SpeedBound(least_mass)};
+        PartSums part{SpeedBound(least_mass)};
         for_each_node_of(number, [&](size_t i) { start(i, part); });
-        parts_[number].take_sums(part);
+        part_sums_[number] = part;
     });
     SpeedBound bound(least_mass);
-    for (const Part& part : parts_) {
+    for (const PartSums& part : part_sums_) {
         bound.add(part.bound);
         seepage += part.seepage;
         gas.escaped += part.escaped;
@@ -134,7 +130,7 @@ void GridMixture<has_gas, exchanges>::end_step(double dt) {
     solve_inner_nodes(dt);
     find_surface();
     SpeedBound bound(least_mass);
-    for (const Part& part : parts_) bound.add(part.bound);
+    for (const PartSums& part : part_sums_) bound.add(part.bound);
     for (const auto [node, up] : edge_) {
         solve(node, dt);
         bound.add(momentum[node].mass, velocity[node]);
@@ -208,9 +204,10 @@ double GridMixture<has_gas, exchanges>::total(const std::vector<double>& values)
 /// Those at the edge are left: few, and they share the surface.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::solve_inner_nodes(double dt) {
+    part_edges_.resize(parts());
     threads.for_each(parts(), [this, dt](size_t part) {
         SpeedBound bound(least_mass);
-        std::vector<EdgeNode>& edge = parts_[part].edge;
+        std::vector<EdgeNode>& edge = part_edges_[part];
         edge.clear();
         for_each_node_of(part, [&](size_t i) {
             if (is_at_edge(i)) {
@@ -221,7 +218,7 @@ void GridMixture<has_gas, exchanges>::solve_inner_nodes(double dt) {
             bound.add(momentum[i].mass, velocity[i]);
             if constexpr (!exchanges) clear_sums(i);
         });
-        parts_[part].bound = bound;
+        part_sums_[part].bound = bound;
     });
 }
 
@@ -231,7 +228,7 @@ void GridMixture<has_gas, exchanges>::find_surface() {
     const auto columns = static_cast<size_t>(grid.cells[0]);
     surfaces_.assign(columns, {});
     edge_.clear();
-    for (const Part& part : parts_) edge_.insert(edge_.end(), part.edge.begin(), part.edge.end());
+    for (const auto& part : part_edges_) edge_.insert(edge_.end(), part.begin(), part.end());
     for (const auto [node, up] : edge_) surfaces_[node % columns].width += up;
 }
 

@@ -142,7 +142,7 @@ struct GridMixture : WalledGrid {
     std::vector<Fluids> rates;
     /// Of the points' heads: x, kg/s per kg of solid and Pa; y, times the node's. Of their psi: x, kg/s per weight and J/kg; y, times the node's.
     std::vector<Fluids> evening;
-    std::vector<NodeVector> force;  ///< of the total stress, and of the weight what mirrors change
+    std::vector<NodeVector> force;  ///< of the total stress, and of the weight what mirrors change, N
     std::vector<NodeGradients> gradients;
     std::vector<Means> means;
     std::vector<double> returned;  ///< F_j . e_j and what crosses the surface, kg/s
@@ -166,20 +166,13 @@ struct GridMixture : WalledGrid {
 
 private:
     /// What a part of the grid adds to the whole's.
-    struct Part {
+    struct PartSums {
         SpeedBound bound;
         double seepage = 0, escaped = 0;  // kg
-        std::vector<EdgeNode> edge{};
-
-        void take_sums(const Part& sums) {
-            bound = sums.bound;
-            seepage = sums.seepage;
-            escaped = sums.escaped;
-        }
     };
     [[nodiscard]] bool is_at_edge(size_t node) const;
     void fold_momenta();
-    void start(size_t node, Part& part);
+    void start(size_t node, PartSums& part);
     void fold_forces();
     void clear_sums(size_t node);
     [[nodiscard]] double facing_up(size_t node) const { return std::max(gradients[node].edge_y, 0.0); }  // at the edge
@@ -202,9 +195,10 @@ private:
     void carry_vapour(size_t node, const GroundEdge& edge, double dt);
     void mirror_solutes();
 
-    std::vector<Part> parts_;
-    std::vector<OpenSurface> surfaces_;  // one a column
-    std::vector<EdgeNode> edge_;         // of the ground
+    std::vector<PartSums> part_sums_;                // one a part
+    std::vector<std::vector<EdgeNode>> part_edges_;  // likewise
+    std::vector<EdgeNode> edge_;                     // of all
+    std::vector<OpenSurface> surfaces_;              // one a column
 };
 
 // grid_solutes.cpp

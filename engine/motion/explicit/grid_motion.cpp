@@ -15,7 +15,7 @@ double slowed(double speed, double by) { return std::copysign(std::max(std::abs(
 /// where it is fixed.
 void GridMotion::mirror() {
     for_each_mirror([this](NodePair nodes, const Mirror& sign) {
-        velocity[nodes.beyond] = {sign.x * velocity[nodes.inside].x, sign.y * velocity[nodes.inside].y};
+        velocity[nodes.beyond] = mirrored(velocity[nodes.inside], sign);
     });
 }
 
@@ -28,10 +28,7 @@ double GridMotion::bound_of_speed() {
 void GridMotion::begin_step() {
     bounds_.assign(parts(), SpeedBound(least_mass));
     for_each_mirror([this](NodePair nodes, const Mirror& sign) {
-        add_mirrored(force[nodes.inside], sign, force[nodes.beyond]);
-        // The weight is mirrored as any force: where the wall turns it about, that is twice of it more than the weight of the mass inside.
-        force[nodes.inside].y += (1 - sign.y) * gravity * momentum[nodes.beyond].mass;
-        force[nodes.beyond] = {};
+        move_inside(force[nodes.inside], force[nodes.beyond], sign, gravity * momentum[nodes.beyond].mass);
         move_inside(momentum[nodes.inside], momentum[nodes.beyond], sign);
     });
     threads.for_each(parts(), [this](size_t part) {

@@ -66,6 +66,14 @@ inline void move_inside(NodeMomentum& inside, NodeMomentum& beyond, const Mirror
     beyond = {};
 }
 
+/// A force beyond a wall comes inside, and what the mirror changes of the weight there: that is mirrored as any force, and the mass it belongs to will be
+/// weighed inside, so that where the wall turns it about twice of it is missing.
+inline void move_inside(NodeVector& inside, NodeVector& beyond, const Mirror& mirror, double weight) {
+    add_mirrored(inside, mirror, beyond);
+    inside.y += (1 - mirror.y) * weight;
+    beyond = {};
+}
+
 /// A bound of the speed that nodes give a point. Nodes that only the rim of a spline reaches have next to no mass and run away, but points see
 /// as little of them: a point of mass m sees at most M / m of the velocity of a node of mass M. Where M is below a share of the least m, the
 /// velocity counts as that much less; of nine such nodes together a point sees at most nine shares of the largest one counted.
@@ -101,7 +109,7 @@ struct GridMotion : WalledGrid {
     double start_speed = 0;              ///< likewise, from its start
     std::vector<NodeMomentum> momentum;  ///< of the points where they came to lie
     std::vector<NodeVector> velocity;
-    std::vector<NodeVector> force;  ///< the weight at first, then the stress's too
+    std::vector<NodeVector> force;  ///< the weight at first, then the stress's too, N
     std::vector<NodeMomentum>
         held;  ///< of points that are held: the mass, and x, y, force of their stress and weight, N; empty: none
 

@@ -52,7 +52,11 @@ struct Mirror {
     double x, y;
 };
 
+/// Of a wall across an axis, as water and scalars see it, and as the ground held by it does.
 inline Mirror even_mirror(size_t axis) { return axis == 0 ? Mirror{-1, 1} : Mirror{1, -1}; }
+inline Mirror mirror_of(const Wall& wall, size_t axis) {
+    return wall.kind == WallKind::fixed ? Mirror{-1, -1} : even_mirror(axis);
+}
 
 struct WalledGrid {
     Grid grid;
@@ -180,7 +184,7 @@ template <class Use>
 void WalledGrid::for_each_mirror(const Use& use) const {
     for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
         if (wall.kind != WallKind::roller && wall.kind != WallKind::fixed) return;
-        const Mirror mirror = wall.kind == WallKind::fixed ? Mirror{-1, -1} : even_mirror(axis);
+        const Mirror mirror = mirror_of(wall, axis);
         for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror); });
     });
 }
@@ -190,7 +194,7 @@ void WalledGrid::for_each_two_mirrors(const Use& use) const {
     for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
         if (wall.kind == WallKind::none) return;
         assert(wall.kind != WallKind::friction);
-        const Mirror even = even_mirror(axis), mirror = wall.kind == WallKind::fixed ? Mirror{-1, -1} : even;
+        const Mirror mirror = mirror_of(wall, axis), even = even_mirror(axis);
         for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror, even); });
     });
 }
