@@ -19,6 +19,22 @@ void GridMotion::mirror() {
     });
 }
 
+/// use(node, bound of a part's speeds), for the parts of the grid at the same time.
+template <class Use>
+void GridMotion::for_each_part(const Use& use) {
+    threads.for_each(parts(), [&](size_t part) {
+        SpeedBound bound(least_mass);
+        for_each_node_of(part, [&](size_t node) { use(node, bound); });
+        bounds_[part] = bound;
+    });
+}
+
+void GridMotion::finish(size_t node, SpeedBound& bound) {
+    bound.add(momentum[node].mass, velocity[node]);
+    momentum[node] = {};
+    force[node] = {};
+}
+
 double GridMotion::bound_of_speed() {
     SpeedBound bound(least_mass);
     for (const SpeedBound& part : bounds_) bound.add(part);
@@ -31,16 +47,12 @@ void GridMotion::begin_step() {
         move_inside(force[nodes.inside], force[nodes.beyond], sign, gravity * momentum[nodes.beyond].mass);
         move_inside(momentum[nodes.inside], momentum[nodes.beyond], sign);
     });
-    threads.for_each(parts(), [this](size_t part) {
-        SpeedBound bound(least_mass);
-        for_each_node_of(part, [&](size_t i) {
-            force[i].y -= gravity * momentum[i].mass;
-            if (!held.empty() && momentum[i].mass > 0) momentum[i].mass += held[i].mass;
-            const double inverse = momentum[i].mass > 0 ? 1 / momentum[i].mass : 0;
-            velocity[i] = velocity_of(momentum[i].x, momentum[i].y, inverse);
-            bound.add(momentum[i].mass, velocity[i]);
-        });
-        bounds_[part] = bound;
+    for_each_part([this](size_t node, SpeedBound& bound) {
+        force[node].y -= gravity * momentum[node].mass;
+        if (!held.empty() && momentum[node].mass > 0) momentum[node].mass += held[node].mass;
+        const double inverse = momentum[node].mass > 0 ? 1 / momentum[node].mass : 0;
+        velocity[node] = velocity_of(momentum[node].x, momentum[node].y, inverse);
+        bound.add(momentum[node].mass, velocity[node]);
     });
     start_speed = bound_of_speed();  // walls make no node faster
     slide(false);
@@ -50,25 +62,19 @@ void GridMotion::begin_step() {
 void GridMotion::end_step(double dt) {
     for_each_mirror(
         [this](NodePair nodes, const Mirror& sign) { add_mirrored(force[nodes.inside], sign, force[nodes.beyond]); });
-    threads.for_each(parts(), [this, dt](size_t part) {
-        for_each_node_of(part, [&](size_t i) {
-            const double response = momentum[i].mass > 0 ? dt / momentum[i].mass : 0;
-            if (!held.empty()) force[i] = {force[i].x + held[i].x, force[i].y + held[i].y};
-            velocity[i].x += response * force[i].x;
-            velocity[i].y += response * force[i].y;
-        });
+    const bool rubs = rubs_along_walls();
+    for_each_part([&](size_t node, SpeedBound& bound) {
+        const double response = momentum[node].mass > 0 ? dt / momentum[node].mass : 0;
+        if (!held.empty()) force[node] = {force[node].x + held[node].x, force[node].y + held[node].y};
+        velocity[node].x += response * force[node].x;
+        velocity[node].y += response * force[node].y;
+        if (!rubs) finish(node, bound);
     });
-    slide(true);
+    if (rubs) {  // by the nodes' masses
+        slide(true);
+        for_each_part([this](size_t node, SpeedBound& bound) { finish(node, bound); });
+    }
     mirror();
-    threads.for_each(parts(), [this](size_t part) {
-        SpeedBound bound(least_mass);
-        for_each_node_of(part, [&](size_t i) {
-            bound.add(momentum[i].mass, velocity[i]);
-            momentum[i] = {};
-            force[i] = {};
-        });
-        bounds_[part] = bound;
-    });
     speed = bound_of_speed();
 }
 

@@ -121,6 +121,9 @@ struct GridMotion : WalledGrid {
 
 private:
     [[nodiscard]] double bound_of_speed();
+    template <class Use>
+    void for_each_part(const Use& use);
+    void finish(size_t node, SpeedBound& bound);
     void mirror();
     void slide(bool with_friction);
     void meet(const Corner& corner, bool with_friction);

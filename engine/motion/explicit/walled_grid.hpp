@@ -64,6 +64,11 @@ struct WalledGrid {
     std::vector<Span> spans;  ///< one a row: outside them all is zero
     Threads threads;
 
+    [[nodiscard]] bool rubs_along_walls() const {
+        const auto rubs = [](const Wall& wall) { return wall.kind == WallKind::friction; };
+        return rubs(walls.left) || rubs(walls.right) || rubs(walls.base) || rubs(walls.top);
+    }
+
     /// No cells, their edges where the walls are.
     void start_grid() {
         grid.corner = {walls.left.kind != WallKind::none ? walls.left.place : walls.right.place, walls.base.place};
