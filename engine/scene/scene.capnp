@@ -453,8 +453,9 @@ enum MotionCondition {
   traction @5;
   # The traction is motionX, motionY, Pa.
   friction @6;
-  # A wall of a dynamic ground, which the ground may leave and slide along, held by Coulomb's friction of the angle frictionAngle. In the
-  # equilibrium at the start it holds as `fixed` on the base, as `roller` on the left and the right.
+  # A wall of a dynamic ground, which the ground may leave and slide along, held by Coulomb's friction of the angle frictionAngle under what
+  # presses the skeleton on it: suction adds nothing to that. Water slides along it. In the equilibrium at the start it holds as `fixed` on the
+  # base, as `roller` on the left and the right.
 }
 
 struct Series {

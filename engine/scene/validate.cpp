@@ -32,13 +32,6 @@ void check_moving_water(const Check& check, const Scene& scene) {
             .require(scene.soils[i].solid.strength.model != StrengthModel::exponential,
                      "= exponential:" + dynamic + "; must be constant, fredlund or vanapalli");
     }
-    for (size_t i = 0; i < scene.boundaries.size(); ++i) {
-        const Boundary& boundary = scene.boundaries[i];
-        check.at("boundaries", i)
-            .at("motion")
-            .require(!(boundary.has_motion && boundary.motion == MotionCondition::friction),
-                     "= friction: under ground that holds water" + dynamic + "; must be free, roller or fixed");
-    }
     check.at("surface")
         .at("pondingDepth")
         .require(scene.surface.ponding_depth == 0,

@@ -27,15 +27,16 @@ def bank(scale=1.0, right=8.0):
 
 HELD = (("base", "fixed", 0), ("left", "roller", 0), ("right", "roller", 0))
 RUBBING = (("base", "friction", 20), ("left", "roller", 0))
+ROUGH = (("base", "friction", 20), ("left", "friction", 20), ("right", "friction", 20))
 
 
 def dry_bank(scale=1.0, cell_size=0.25, walls=HELD, **numbers):
     return dynamic(bank(scale), [dry(earth(**{"cohesion": 500, "friction": 20, **numbers}))], walls, cell_size * scale)
 
 
-def wet_bank(water=1e7, rain=0.0, table=1.0, **numbers):
+def wet_bank(water=1e7, rain=0.0, table=1.0, walls=HELD, **numbers):
     soil = earth(**{"cohesion": 500, "friction": 20, "conductivity": 1e-4, **numbers})
-    return dynamic(bank(), [soil], HELD, 0.25, water, rain, table)
+    return dynamic(bank(), [soil], walls, 0.25, water, rain, table)
 
 
 def block(width, height, walls, cell_size, **numbers):
@@ -78,6 +79,10 @@ def water_cases():
     yield Case("dynamic/porous", wet_bank(porosity=0.9), SLIDE)
     yield Case("dynamic/dense", wet_bank(porosity=0.05), SLIDE)
     yield Case("dynamic/wet_and_stiff", wet_bank(2e9, young=1e11), SLIDE)
+    yield Case("dynamic/wet_rubbing", wet_bank(rain=1e-3, walls=ROUGH), [["step", 0.1, 20]])
+    yield Case("dynamic/wet_on_a_smooth_base", wet_bank(cohesion=50, walls=(("base", "friction", 1), ("left", "roller", 0))), [["step", 0.1, 20]])
+    yield Case("dynamic/full_and_rubbing", wet_bank(2e9, table=2.0, conductivity=1e-9, walls=ROUGH), SLIDE)
+    yield Case("dynamic/loose_and_rubbing", wet_bank(conductivity=0.3, walls=ROUGH), SLIDE)
     yield Case("dynamic/undrained", wet_bank(2e9, conductivity=1e-13, poisson=0.4999), SLIDE)
 
 
@@ -107,6 +112,7 @@ def gas_cases(sweep, bank):
     for alpha, n in ((1e-7, 1.03), (1e-2, 6), (1e-7, 6)):
         yield Case(f"{sweep}/{alpha:g}_{n:g}", bank(alpha=alpha, n=n, table=-1.0), SLIDE)
     yield Case(f"{sweep}/soft_water", bank(water=1e5, conductivity=0.3), SLIDE)
+    yield Case(f"{sweep}/rubbing", bank(walls=ROUGH), [["step", 0.1, 20]])
     yield Case(f"{sweep}/porous", bank(porosity=0.9), SLIDE)
     yield Case(f"{sweep}/dense", bank(porosity=0.05), SLIDE)
 

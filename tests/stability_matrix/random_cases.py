@@ -143,11 +143,11 @@ TOO_SOFT = "too soft for what it bears"
 SUBSTEPS = (10, 3000)  # about
 
 
-def random_walls(draw, is_wet):
+def random_walls(draw):
     """Of the base, the left and the right; the ground may leave a side without one."""
-    rubs = () if is_wet else ("friction",)
-    for side, motions in (("base", ("fixed", "roller")), ("left", ("roller", None)), ("right", ("roller", None))):
-        motion = draw.choice((*motions, *rubs))
+    for side, motions in (("base", ("fixed", "roller", "friction")), ("left", ("roller", None, "friction")),
+                          ("right", ("roller", None, "friction"))):
+        motion = draw.choice(motions)
         if motion:
             yield {"name": side, "side": side, "motion": motion,
                    **({"frictionAngle": draw.uniform(1, 45)} if motion == "friction" else {})}
@@ -190,7 +190,7 @@ def moving_section(seed):
     ground = section([[0.0, height], [width / 3, height], [2 * width / 3, low], [width, low]], [[0.0, 0.0], [width, 0.0]],
                      width / draw.whole(4, 8), height / draw.whole(5, 10), height / draw.whole(2, 4),
                      [{"soil": "upper"}, {"soil": "lower", "top": [[0.0, low / 2], [width, low / 2]]}])
-    walls = list(random_walls(draw, is_wet))
+    walls = list(random_walls(draw))
     is_held = any(wall["side"] == "base" for wall in walls) and any(wall["motion"] != "roller" or wall["side"] != "base" for wall in walls)
     scene = {"name": "stability", "soils": soils, "ground": ground, "boundaries": walls,
              "physics": {"regime": "dynamic", "water": is_wet}, "dynamics": {"cellSize": cell_size},

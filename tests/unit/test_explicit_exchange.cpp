@@ -56,7 +56,7 @@ TEST_CASE(
         }
         const double water = water_of(points), gas = air_of(points);
         const ExplicitSoil soil{elasticity(1e6, 0.3), true, mohr_coulomb({100, 30}, 0, 1e300)};
-        const Walls walls{{}, {WallKind::roller, 3, 0}, {WallKind::fixed, 0, 0}, {}};
+        const Walls walls{{WallKind::friction, 0.45, 0.3}, {WallKind::roller, 3, 0}, {WallKind::friction, 0, 0.3}, {}};
         Exchange block(cell_size, walls, gravity, {soil}, {moist}, {{loam(), 1e6}}, {1000, 1e6}, std::move(points),
                        threads, air, exchange_at_20_degrees(0.5));
         block.set_rain([](double) { return 1e-4; });

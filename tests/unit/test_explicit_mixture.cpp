@@ -105,18 +105,114 @@ TEST_CASE("a soil that does not yield bears what its weak neighbour does not") {
 
 TEST_CASE("wet ground that falls apart loses no water") {
     constexpr double cell_size = 0.1;
-    FreePoints points = block_of_points(cell_size, 1, 0, 5, 10, gas_fields);
-    for (size_t p = 0; p < points.count; ++p) points[water_mass][p] = 1000 * porosity * 0.9 * points[point_volume][p];
-    ExplicitMixture<Filling::unsaturated> column(cell_size, {{}, {}, {WallKind::fixed, 0, 0}}, gravity,
-                                                 {{elasticity(1e6, 0.3), true, mohr_coulomb({1, 10}, 0, 1e300)}},
-                                                 {{grain_density, 1e-2 / (1000 * gravity)}}, {{loam(), 1e6}},
-                                                 {1000, 1e6}, std::move(points), 1);
-    column.set_rain([](double) { return 1e-4; });
-    const double before = water_of(column.points());
-    for (int i = 1; i <= 3000; ++i) REQUIRE(column.step(column.critical_step(), i % 100 == 0));
-    const double gained = column.rained() - column.run_off() - column.seepage();
-    CHECK(water_of(column.points()) == doctest::Approx(before + gained).epsilon(1e-12));
-    CHECK(column.rained() > 0);
+    for (const WallKind kind : {WallKind::fixed, WallKind::friction}) {
+        const Walls walls{{WallKind::friction, 0.95, 0.5}, {}, {kind, 0, 0.3}};
+        FreePoints points = block_of_points(cell_size, 1, 0, 5, 10, gas_fields);
+        for (size_t p = 0; p < points.count; ++p)
+            points[water_mass][p] = 1000 * porosity * 0.9 * points[point_volume][p];
+        ExplicitMixture<Filling::unsaturated> column(
+            cell_size, walls, gravity, {{elasticity(1e6, 0.3), true, mohr_coulomb({1, 10}, 0, 1e300)}},
+            {{grain_density, 1e-2 / (1000 * gravity)}}, {{loam(), 1e6}}, {1000, 1e6}, std::move(points), 1);
+        column.set_rain([](double) { return 1e-4; });
+        const double before = water_of(column.points());
+        for (int i = 1; i <= 3000; ++i) REQUIRE(column.step(column.critical_step(), i % 100 == 0));
+        const double gained = column.rained() - column.run_off() - column.seepage();
+        CHECK(water_of(column.points()) == doctest::Approx(before + gained).epsilon(1e-12));
+        CHECK(column.rained() > 0);
+    }
+}
+
+namespace {
+
+constexpr double coefficient = 0.3;  // of friction
+
+/// A block of two cells' height that slides over a base with friction at 2 m/s for 0.4 s, in balance with its weight and its pores' pressure; its speed in the end.
+template <Filling filling>
+double slide(double filled, int32_t threads) {
+    constexpr double cell_size = 0.1, height = 2 * cell_size, bulk_modulus = 1e6;
+    constexpr ExplicitHydraulics tight{grain_density, 1e-10 / (1000 * gravity), 0, false, 1e-12};
+    FreePoints points = block_of_points(cell_size, 0, 0, 10, 2, gas_fields);
+    const double density = block_density + 1000 * porosity * filled;
+    for (size_t p = 0; p < points.count; ++p) {
+        const double depth = height - points[position_y][p];
+        const double pressure = filled < 1 ? 0 : 1000 * gravity * depth;
+        points[water_mass][p] = 1000 * porosity * filled * points[point_volume][p] * (1 + pressure / bulk_modulus);
+        points[stress_yy][p] = pressure - density * gravity * depth;
+        points[stress_xx][p] = pressure;
+        points[velocity_x][p] = points[liquid_velocity_x][p] = points[gas_velocity_x][p] = 2;
+    }
+    fill_with_air(points);
+    ExplicitMixture<filling> block(cell_size, {{}, {}, {WallKind::friction, 0, coefficient}}, gravity,
+                                   {{elasticity(1e8, 0)}}, {tight}, {{loam(), bulk_modulus}}, {1000, bulk_modulus},
+                                   std::move(points), threads);
+    const double water = water_of(block.points());
+    const auto steps = static_cast<int64_t>(std::ceil(0.4 / block.critical_step()));
+    for (int64_t step = 1; step <= steps; ++step) REQUIRE(block.step(0.4 / static_cast<double>(steps), step == steps));
+    CHECK(water_of(block.points()) == doctest::Approx(water - block.seepage()).epsilon(1e-12));
+    double momentum = 0, mass = 0;
+    for (size_t p = 0; p < block.points().count; ++p) {
+        momentum += block.points()[solid_mass][p] * block.points()[velocity_x][p];
+        mass += block.points()[solid_mass][p];
+    }
+    return momentum / mass;
+}
+
+double slowed_by(double share_of_weight) { return 2 - coefficient * share_of_weight * gravity * 0.4; }
+
+}  // namespace
+
+TEST_CASE("friction slows wet ground by what presses its skeleton on the wall") {
+    CHECK(slide<Filling::unsaturated>(0.5, 1) == doctest::Approx(slowed_by(1)).epsilon(0.01));
+    CHECK(slide<Filling::three_phase>(0.5, 1) == doctest::Approx(slowed_by(1)).epsilon(0.01));
+    const double density = block_density + 1000 * porosity;
+    CHECK(slide<Filling::unsaturated>(1, 1) == doctest::Approx(slowed_by((density - 1000) / density)).epsilon(0.01));
+    CHECK(slide<Filling::unsaturated>(1, 1) == slide<Filling::unsaturated>(1, 2));
+}
+
+TEST_CASE("wet ground that rubs on both walls of a corner gains no energy there") {
+    constexpr double cell_size = 0.25, poisson = 0.45, filled = 0.5;
+    constexpr ExplicitHydraulics tight{grain_density, 1e-10 / (1000 * gravity)};
+    const Walls walls{{WallKind::friction, 0, 0.7}, {WallKind::friction, 2, 0.55}, {WallKind::friction, 0, 0.035}};
+    FreePoints points = block_of_points(cell_size, 0, 0, 8, 4, gas_fields);
+    for (size_t p = 0; p < points.count; ++p) {
+        const double vertical = -(block_density + 1000 * porosity * filled) * gravity * (1 - points[position_y][p]);
+        points[water_mass][p] = 1000 * porosity * filled * points[point_volume][p];
+        points[stress_yy][p] = vertical;
+        points[stress_xx][p] = points[stress_zz][p] = poisson / (1 - poisson) * vertical;
+    }
+    ExplicitMixture<Filling::unsaturated> ground(cell_size, walls, gravity, {{elasticity(1e7, poisson)}}, {tight},
+                                                 {{loam(), 1e6}}, {1000, 1e6}, std::move(points), 1);
+    const auto energy = [&] {
+        const Energies parts = ground.energies();
+        return parts.kinetic + parts.elastic + parts.potential;
+    };
+    const double start = energy(), dt = ground.critical_step();
+    for (int step = 1; step <= 500; ++step) REQUIRE(ground.step(dt, step == 500));
+    CHECK(energy() - start < 0.02 * ground.energies().elastic);
+}
+
+TEST_CASE("wet ground leaves a wall with friction as if there were none") {
+    constexpr double cell_size = 0.1;
+    FreePoints points = block_of_points(cell_size, 0, 0, 5, 4, gas_fields);
+    for (size_t p = 0; p < points.count; ++p) {
+        points[water_mass][p] = 1000 * porosity * 0.5 * points[point_volume][p];
+        points[velocity_x][p] = points[liquid_velocity_x][p] = 1;
+        points[velocity_y][p] = points[liquid_velocity_y][p] = 1;
+    }
+    const Walls walls{{WallKind::friction, 0, 0.5}, {}, {WallKind::friction, 0, 0.5}};
+    ExplicitMixture<Filling::unsaturated> block(cell_size, walls, gravity, {{elasticity(1e6, 0)}}, {moist},
+                                                {{loam(), 1e6}}, {1000, 1e6}, std::move(points), 1);
+    const double dt = block.critical_step();
+    for (int i = 1; i <= 40; ++i) REQUIRE(block.step(dt, i == 40));
+    const FreePoints& thrown = block.points();
+    double x = 0, y = 0, mass = 0;
+    for (size_t p = 0; p < thrown.count; ++p) {
+        x += thrown[solid_mass][p] * thrown[velocity_x][p] + thrown[water_mass][p] * thrown[liquid_velocity_x][p];
+        y += thrown[solid_mass][p] * thrown[velocity_y][p] + thrown[water_mass][p] * thrown[liquid_velocity_y][p];
+        mass += thrown[solid_mass][p] + thrown[water_mass][p];
+    }
+    CHECK(x / mass == doctest::Approx(1).epsilon(1e-9));
+    CHECK(y / mass == doctest::Approx(1 - 40 * dt * gravity).epsilon(1e-9));
 }
 
 TEST_CASE("dry ground below wet ground gives none of the water that does not flow") {
@@ -351,7 +447,7 @@ TEST_CASE("a mixture gives the same bits with one and two threads") {
 TEST_CASE(
     "ground of three phases that slumps loses no water and no air but through its edge, with the same bits for one and two threads") {
     constexpr double cell_size = 0.05;
-    const auto run = [](int32_t threads) {
+    const auto run = [](const Walls& walls, int32_t threads) {
         FreePoints points = block_of_points(cell_size, 0.5, 0.02, 20, 20, gas_fields);
         for (size_t p = 0; p < points.count; ++p) {
             const double filled = points[position_y][p] < 0.3 ? 1 : 0.7;
@@ -361,7 +457,6 @@ TEST_CASE(
         fill_with_air(points);
         const double water = water_of(points), gas = air_of(points);
         const ExplicitSoil soil{elasticity(1e6, 0.3), true, mohr_coulomb({100, 30}, 0, 1e300)};
-        const Walls walls{{}, {WallKind::roller, 3, 0}, {WallKind::fixed, 0, 0}, {}};
         ExplicitMixture<Filling::three_phase> block(cell_size, walls, gravity, {soil}, {moist}, {{loam(), 1e6}},
                                                     {1000, 1e6}, std::move(points), threads, air);
         for (int i = 1; i <= 2000; ++i) CHECK(block.step(block.critical_step(), i == 2000));
@@ -370,7 +465,13 @@ TEST_CASE(
         CHECK(std::abs(block.gas_escaped()) < gas);
         return block.points();
     };
-    const FreePoints one = run(1), two = run(2);
-    for (size_t f = 0; f < gas_fields; ++f) CHECK(one.field[f] == two.field[f]);
-    CHECK(one.least(gas_mass) >= 0);
+    const Wall rough{WallKind::friction, 0, 0.3}, behind{WallKind::friction, 0.45, 0.3},
+        ahead{WallKind::friction, 1.65, 0.3};
+    for (const Walls& walls :
+         {Walls{{}, {WallKind::roller, 3, 0}, {WallKind::fixed, 0, 0}, {}}, Walls{behind, ahead, rough, {}},
+          Walls{{WallKind::roller, 0.45, 0}, ahead, {WallKind::fixed, 0, 0}, {}}}) {
+        const FreePoints one = run(walls, 1), two = run(walls, 2);
+        for (size_t f = 0; f < gas_fields; ++f) CHECK(one.field[f] == two.field[f]);
+        CHECK(one.least(gas_mass) >= 0);
+    }
 }

@@ -11,27 +11,6 @@ constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is
 /// Gas is never thinner than this share of the atmosphere where a density is divided by.
 constexpr double least_density_share = 1e-6;
 
-void add_mirrored(NodeGradients& inside, const Mirror& mirror, const NodeGradients& beyond) {
-    inside.push_x += mirror.x * beyond.push_x;
-    inside.push_y += mirror.y * beyond.push_y;
-    inside.edge_x += mirror.x * beyond.edge_x;
-    inside.edge_y += mirror.y * beyond.edge_y;
-}
-
-void add(NodeMeans& inside, const NodeMeans& beyond) {
-    inside.push += beyond.push;
-    inside.permeability += beyond.permeability;
-    inside.volume += beyond.volume;
-    inside.resistance += beyond.resistance;
-}
-
-void add(NodeMeansBesideGas& inside, const NodeMeansBesideGas& beyond) {
-    inside.push += beyond.push;
-    inside.mobility += beyond.mobility;
-    inside.volume += beyond.volume;
-    inside.edge_mobility += beyond.edge_mobility;
-}
-
 }  // namespace
 
 void NodeGas::resize(size_t nodes) {
@@ -59,19 +38,14 @@ void GridMixture<has_gas, exchanges>::resize() {
 }
 
 template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::fold_momenta() {
-    for_each_two_mirrors([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
-        const auto [inside, beyond] = nodes;
-        double mass = momentum[beyond].mass + liquid_momentum[beyond].mass;
-        if constexpr (has_gas) mass += gas.momentum[beyond].mass;
-        move_inside(force[inside], force[beyond], mirror, gravity * mass);
-        move_inside(momentum[inside], momentum[beyond], mirror);
-        move_inside(liquid_momentum[inside], liquid_momentum[beyond], even);
-        if constexpr (has_gas) {
-            move_inside(gas.momentum[inside], gas.momentum[beyond], even);
-            gas.weight[inside] += gas.weight[beyond];  // what is left beyond nobody reads
-        }
-    });
+void GridMixture<has_gas, exchanges>::find_velocities(size_t node) {
+    const NodeMomentum& solid = momentum[node];
+    velocity[node] = velocity_of(solid.x, solid.y, solid.mass > 0 ? 1 / solid.mass : 0);
+    const auto own_velocity = [&](const NodeMomentum& fluid) {
+        return fluid.mass > 0 ? velocity_of(fluid.x, fluid.y, 1 / fluid.mass) : velocity[node];
+    };
+    liquid_of(fluid_velocity[node]) = own_velocity(liquid_momentum[node]);
+    if constexpr (has_gas) fluid_velocity[node].gas = own_velocity(gas.momentum[node]);
 }
 
 /// Velocities and rates of a node from what the points gave. `part` gets what has left with the surface: what came to a node that the last point has left.
@@ -82,18 +56,12 @@ void GridMixture<has_gas, exchanges>::start(size_t node, PartSums& part) {
         part.seepage += flow_time * returned[node];
         returned[node] = 0;
     }
+    find_velocities(node);
+    part.bound.add(solid.mass, velocity[node]);
     const double inverse = solid.mass > 0 ? 1 / solid.mass : 0;
-    const NodeVector with_solid = velocity_of(solid.x, solid.y, inverse);
-    const auto own_velocity = [&](const NodeMomentum& fluid) {
-        return fluid.mass > 0 ? velocity_of(fluid.x, fluid.y, 1 / fluid.mass) : with_solid;
-    };
-    velocity[node] = with_solid;
-    part.bound.add(solid.mass, with_solid);
-    liquid_of(fluid_velocity[node]) = own_velocity(liquid);
     liquid_of(rates[node]) = {solid.more * inverse, (liquid.more + returned[node]) * inverse};
     if constexpr (has_gas) {
         const NodeMomentum& own = gas.momentum[node];
-        fluid_velocity[node].gas = own_velocity(own);
         const double gain = own.more + gas.returned[node];
         const bool loses = gain < 0 && own.mass > 0;
         rates[node].gas = {};
@@ -126,7 +94,7 @@ void GridMixture<has_gas, exchanges>::begin_step() {
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::end_step(double dt) {
-    fold_forces();
+    fold_forces(dt);
     solve_inner_nodes(dt);
     find_surface();
     SpeedBound bound(least_mass);
@@ -165,28 +133,6 @@ void GridMixture<has_gas, exchanges>::clear_sums(size_t node) {
         solutes.gradients[node] = {};
         solutes.means[node] = {};
     }
-}
-
-template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::fold_forces() {
-    for_each_two_mirrors([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
-        const auto [inside, beyond] = nodes;
-        add_mirrored(force[inside], mirror, force[beyond]);
-        add_mirrored(gradients[inside], even, gradients[beyond]);
-        gradients[beyond] = {};
-        add(means[inside], means[beyond]);
-        means[beyond] = {};
-        if constexpr (has_gas) {  // what is left beyond the wall nobody reads
-            add_mirrored(gas.gradients[inside], even, gas.gradients[beyond]);
-            GasMeans& gas_in = gas.means[inside];
-            const GasMeans& gas_out = gas.means[beyond];
-            gas_in.push += gas_out.push;
-            gas_in.mobility += gas_out.mobility;
-            gas_in.volume += gas_out.volume;
-            gas_in.mass += gas_out.mass;
-        }
-    });
-    if constexpr (exchanges) fold_solute_means();
 }
 
 template <bool has_gas, bool exchanges>
@@ -365,6 +311,14 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
         }
         move(&NodeVector::x, pushed, gas_pushed);
         move(&NodeVector::y, pushed, gas_pushed);
+        if (!rubs_ || contact_at_[node] < 0) return;
+        ImpulseAnswer by_impulse{coupled, drag / (1 + drag), liquid_mass / mean.volume, push};
+        if constexpr (has_gas) {
+            by_impulse.gas_follows = answer.drag / (1 + answer.drag);
+            by_impulse.gas_density = answer.density;
+            by_impulse.gas_potential = answer.push;
+        }
+        rub(node, dt, by_impulse);
     };
     const NodeVector inner{sums.push_x - push * outwards.x, sums.push_y - push * outwards.y};
     NodeVector gas_inner{}, gas_outwards{};
@@ -439,20 +393,6 @@ void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const Grou
     const double inflow = (drawn - filling * gas.returned[node]) / (1 + filling);
     gas.returned[node] += inflow;
     gas.escaped -= dt * inflow;
-}
-
-/// Beyond a wall the nodes move as the mirrored ground would; water slides along every wall.
-template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::mirror() {
-    for_each_two_mirrors([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
-        const auto [inside, beyond] = nodes;
-        velocity[beyond] = mirrored(velocity[inside], mirror);
-        fluid_velocity[beyond] = mirrored(fluid_velocity[inside], even);
-        flux[beyond] = mirrored(flux[inside], even);
-        rates[beyond] = rates[inside];
-        evening[beyond] = evening[inside];
-    });
-    if constexpr (exchanges) mirror_solutes();
 }
 
 template struct GridMixture<false>;

@@ -22,6 +22,10 @@
 #include "motion/explicit/walled_grid.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <type_traits>
 #include <vector>
 
@@ -83,6 +87,8 @@ struct NodeGas {
     double specific = 0;                   ///< R T / M, J/kg
     double escaped = 0;  ///< through the surface in the steps ended, kg; with exchange, air alone, in the liquid too
 
+    /// Of gas whose R T / M ln(P / P_0) is so much, J/kg, above the atmosphere's, Pa.
+    [[nodiscard]] double pressure(double energy) const { return density * specific * std::expm1(energy / specific); }
     void resize(size_t nodes);
 };
 
@@ -105,6 +111,30 @@ struct OpenSurface {
     double fallen = 0;  ///< of rain, kg/s
     double left = 0;    ///< of rain and seepage that nodes have not taken, kg/s
     double room = 0;    ///< in nodes that could take more, kg/s
+};
+
+/// Where the ground is on a wall with friction: two nodes whose sums have come together at the one inside.
+struct Contact {
+    const Wall* wall = nullptr;
+    size_t axis = 0;                        ///< across the wall
+    int32_t inwards = 0;                    ///< the direction in which the ground lies, 1 or -1
+    int32_t other = -1;                     ///< contact of the same node; -1: none
+    double solid = 0, liquid = 0, gas = 0;  ///< mass inside less mass beyond, kg
+    double pushed = 0;    ///< momentum across the wall of all phases at both nodes, at the step's start, kg m/s
+    double weight = 0;    ///< that came to the inner node's force with its momentum, N
+    double force = 0;     ///< across the wall on both nodes, N
+    double area = 0;      ///< of the wall, m
+    double pressing = 0;  ///< impulse of the skeleton on the wall in the step, N s
+};
+
+/// How a node answers to an impulse on its solid.
+struct ImpulseAnswer {
+    double mass = 0;            ///< that it moves, the fluids' that drag takes along included, kg
+    double liquid_follows = 0;  ///< change of the liquid's velocity per the solid's
+    double liquid_density = 0;  ///< flux per velocity through the solid, kg/m3
+    double head = 0;            ///< p + rho_l g y, Pa
+    double gas_follows = 0, gas_density = 0;
+    double gas_potential = 0;  ///< psi, J/kg
 };
 
 struct EdgeNode {
@@ -171,9 +201,23 @@ private:
         double seepage = 0, escaped = 0;  // kg
     };
     [[nodiscard]] bool is_at_edge(size_t node) const;
+    template <class Use>
+    void for_each_meeting(const Use& use) const;
+    [[nodiscard]] std::ptrdiff_t to_inner(size_t node, size_t axis) const;
+    template <class Use>
+    void for_each_pair_in_turn(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const;
+    void forget_contacts();
+    bool touch(const Wall& wall, size_t axis, int32_t inwards, NodePair nodes, double dt);
+    [[nodiscard]] double force_across(NodePair nodes, size_t axis, double weight) const;
+    bool presses(const Wall& wall, size_t axis, int32_t inwards, NodePair nodes, double dt);
+    void join_contacts(NodePair nodes);
+    void rub(size_t node, double dt, const ImpulseAnswer& answer);
+    void fold_momenta(NodePair nodes, const Mirror& mirror, const Mirror& even);
     void fold_momenta();
+    void find_velocities(size_t node);
     void start(size_t node, PartSums& part);
-    void fold_forces();
+    void fold_forces(NodePair nodes, const Mirror& mirror, const Mirror& even);
+    void fold_forces(double dt);
     void clear_sums(size_t node);
     [[nodiscard]] double facing_up(size_t node) const { return std::max(gradients[node].edge_y, 0.0); }  // at the edge
     void solve_inner_nodes(double dt);
@@ -199,7 +243,28 @@ private:
     std::vector<std::vector<EdgeNode>> part_edges_;  // likewise
     std::vector<EdgeNode> edge_;                     // of all
     std::vector<OpenSurface> surfaces_;              // one a column
+
+    bool rubs_ = false;  // whether any wall has friction; what follows is empty where none has
+    std::vector<Contact> contacts_;
+    std::vector<int32_t> contact_at_;  // one a node: the first contact that it is the inner node of; -1: none
+    std::array<std::vector<uint8_t>, 2>
+        meets_;  // likewise, by the axis across the wall: whether it is the node beyond in a contact
 };
+
+/// use(nodes, mirror, even) for every pair along a roller or a fixed wall, and where the ground is on a wall with friction. `even` is what water and
+/// scalars see, to which every wall is a roller.
+template <bool has_gas, bool exchanges>
+template <class Use>
+void GridMixture<has_gas, exchanges>::for_each_meeting(const Use& use) const {
+    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
+        if (wall.kind == WallKind::none) return;
+        const bool rubs = wall.kind == WallKind::friction;
+        const Mirror mirror = mirror_of(wall, axis), even = even_mirror(axis);
+        for_each_pair(wall, axis, inwards, [&](NodePair nodes) {
+            if (!rubs || meets_[axis][nodes.beyond] != 0) use(nodes, mirror, even);
+        });
+    });
+}
 
 // grid_solutes.cpp
 template <>
@@ -220,9 +285,5 @@ template <>
 void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, double dt);
 template <>
 void GridMixture<true, true>::mirror_solutes();
-
-extern template struct GridMixture<false>;
-extern template struct GridMixture<true>;
-extern template struct GridMixture<true, true>;
 
 }  // namespace talus

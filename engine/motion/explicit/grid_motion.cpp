@@ -5,11 +5,6 @@
 #include <cmath>
 
 namespace talus {
-namespace {
-
-double slowed(double speed, double by) { return std::copysign(std::max(std::abs(speed) - by, 0.0), speed); }
-
-}  // namespace
 
 /// Beyond a wall the nodes move as the mirrored ground would, so that what is interpolated on the wall is zero across it, and along it
 /// where it is fixed.

@@ -44,6 +44,9 @@ inline NodeVector velocity_of(double x, double y, double per_mass) {
     return {std::abs(along_x) < least ? 0 : along_x, std::abs(along_y) < least ? 0 : along_y};
 }
 
+/// What friction leaves of a speed that it can take so much off.
+inline double slowed(double speed, double by) { return std::copysign(std::max(std::abs(speed) - by, 0.0), speed); }
+
 inline NodeVector mirrored(const NodeVector& vector, const Mirror& mirror) {
     return {mirror.x * vector.x, mirror.y * vector.y};
 }

@@ -67,19 +67,23 @@ void GridMixture<true, true>::lose(const SoluteReturn& rate) {
 
 template <>
 void GridMixture<true, true>::fold_solutes() {
-    for_each_two_mirrors([this](NodePair nodes, const Mirror&, const Mirror&) {
+    for_each_meeting([this](NodePair nodes, const Mirror&, const Mirror&) {
         SoluteGains &inside = solutes.gains[nodes.inside], &beyond = solutes.gains[nodes.beyond];
         inside.dissolved += beyond.dissolved;
         inside.dissolved_gain += beyond.dissolved_gain;
         inside.vapour += beyond.vapour;
         inside.vapour_gain += beyond.vapour_gain;
         beyond = {};
+        SoluteReturn &back = solutes.returned[nodes.inside], &back_beyond = solutes.returned[nodes.beyond];
+        back.dissolved += back_beyond.dissolved;
+        back.vapour += back_beyond.vapour;
+        back_beyond = {};
     });
 }
 
 template <>
 void GridMixture<true, true>::fold_solute_means() {
-    for_each_two_mirrors([this](NodePair nodes, const Mirror&, const Mirror& mirror) {
+    for_each_meeting([this](NodePair nodes, const Mirror&, const Mirror& mirror) {
         SoluteGradients &inside = solutes.gradients[nodes.inside], &beyond = solutes.gradients[nodes.beyond];
         add_mirrored(inside.dissolved, mirror, beyond.dissolved);
         add_mirrored(inside.vapour, mirror, beyond.vapour);
@@ -163,7 +167,7 @@ void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, 
 
 template <>
 void GridMixture<true, true>::mirror_solutes() {
-    for_each_two_mirrors([this](NodePair nodes, const Mirror&, const Mirror& mirror) {
+    for_each_meeting([this](NodePair nodes, const Mirror&, const Mirror& mirror) {
         solutes.fluxes[nodes.beyond] = mirrored(solutes.fluxes[nodes.inside], mirror);
         for (auto* field : {&solutes.evenings, &solutes.mixings, &solutes.rates})
             (*field)[nodes.beyond] = (*field)[nodes.inside];

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -105,10 +104,6 @@ struct WalledGrid {
     /// use(nodes, mirror) for every pair that a roller or a fixed wall mirrors, wall after wall: in a corner, sums go from node to node.
     template <class Use>
     void for_each_mirror(const Use& use) const;
-
-    /// use(nodes, mirror, even), where no wall has friction: `even` is what water and scalars see, to which every wall is a roller.
-    template <class Use>
-    void for_each_two_mirrors(const Use& use) const;
 };
 
 template <class Use>
@@ -191,16 +186,6 @@ void WalledGrid::for_each_mirror(const Use& use) const {
         if (wall.kind != WallKind::roller && wall.kind != WallKind::fixed) return;
         const Mirror mirror = mirror_of(wall, axis);
         for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror); });
-    });
-}
-
-template <class Use>
-void WalledGrid::for_each_two_mirrors(const Use& use) const {
-    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
-        if (wall.kind == WallKind::none) return;
-        assert(wall.kind != WallKind::friction);
-        const Mirror mirror = mirror_of(wall, axis), even = even_mirror(axis);
-        for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror, even); });
     });
 }
 
