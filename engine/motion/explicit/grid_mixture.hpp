@@ -206,6 +206,7 @@ private:
     [[nodiscard]] std::ptrdiff_t to_inner(size_t node, size_t axis) const;
     template <class Use>
     void for_each_pair_in_turn(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const;
+    [[nodiscard]] bool is_held_below(size_t node, size_t axis, std::ptrdiff_t inner) const;
     void forget_contacts();
     bool touch(const Wall& wall, size_t axis, int32_t inwards, NodePair nodes, double dt);
     [[nodiscard]] double force_across(NodePair nodes, size_t axis, double weight) const;
@@ -246,9 +247,9 @@ private:
 
     bool rubs_ = false;  // whether any wall has friction; what follows is empty where none has
     std::vector<Contact> contacts_;
-    std::vector<int32_t> contact_at_;  // one a node: the first contact that it is the inner node of; -1: none
-    std::array<std::vector<uint8_t>, 2>
-        meets_;  // likewise, by the axis across the wall: whether it is the node beyond in a contact
+    std::vector<int32_t> contact_at_;  // one a node: the first of those whose sums come to it; -1: none
+    std::array<std::vector<int32_t>, 2>
+        contact_beyond_;  // likewise, by the axis across the wall: that it is the outer node of
 };
 
 /// use(nodes, mirror, even) for every pair along a roller or a fixed wall, and where the ground is on a wall with friction. `even` is what water and
@@ -261,7 +262,7 @@ void GridMixture<has_gas, exchanges>::for_each_meeting(const Use& use) const {
         const bool rubs = wall.kind == WallKind::friction;
         const Mirror mirror = mirror_of(wall, axis), even = even_mirror(axis);
         for_each_pair(wall, axis, inwards, [&](NodePair nodes) {
-            if (!rubs || meets_[axis][nodes.beyond] != 0) use(nodes, mirror, even);
+            if (!rubs || contact_beyond_[axis][nodes.beyond] >= 0) use(nodes, mirror, even);
         });
     });
 }

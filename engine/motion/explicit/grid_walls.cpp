@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace talus {
 namespace {
+
+size_t from(size_t node, std::ptrdiff_t step) { return static_cast<size_t>(static_cast<std::ptrdiff_t>(node) + step); }
 
 void add_mirrored(NodeGradients& inside, const Mirror& mirror, const NodeGradients& beyond) {
     inside.push_x += mirror.x * beyond.push_x;
@@ -59,7 +62,7 @@ template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::forget_contacts() {
     contacts_.clear();
     contact_at_.assign(grid.nodes(), -1);
-    for (auto& meets : meets_) meets.assign(grid.nodes(), 0);
+    for (auto& contact : contact_beyond_) contact.assign(grid.nodes(), -1);
 }
 
 /// Of stress and weight on two nodes, less what the inner one has got in advance, N.
@@ -88,16 +91,25 @@ bool GridMixture<has_gas, exchanges>::touch(const Wall& wall, size_t axis, int32
     if constexpr (has_gas) add(gas.momentum, contact.gas);
     const std::ptrdiff_t inner = to_inner(inside, axis);
     if (inner != 0) {
-        if (meets_[axis][static_cast<size_t>(static_cast<std::ptrdiff_t>(beyond) + inner)] == 0) return false;
+        if (contact_beyond_[axis][from(beyond, inner)] < 0) return false;
     } else {
         const double force_by_then = dt > 0 ? force_across(nodes, axis, 0) : 0;
         if (inwards * (contact.pushed + dt * force_by_then) >= 0) return false;  // it leaves the wall
     }
-    contact.other = contact_at_[inside];
-    contact_at_[inside] = static_cast<int32_t>(contacts_.size());
-    meets_[axis][beyond] = 1;
+    const auto number = static_cast<int32_t>(contacts_.size());
+    int32_t& first = contact_at_[is_held_below(inside, axis, inner) ? from(inside, inner) : inside];
+    contact.other = std::exchange(first, number);
+    contact_beyond_[axis][beyond] = number;
     contacts_.push_back(contact);
     return true;
+}
+
+/// Whether a node along an upright wall is beyond a level one, too, that holds the ground there by now: its sums come to the one inside that.
+template <bool has_gas, bool exchanges>
+bool GridMixture<has_gas, exchanges>::is_held_below(size_t node, size_t axis, std::ptrdiff_t inner) const {
+    if (axis == 1 || inner == 0) return false;
+    const Wall& level = inner > 0 ? walls.base : walls.top;
+    return level.kind != WallKind::friction || contact_beyond_[1][node] >= 0;
 }
 
 /// What rubs on one wall beyond another does so inside it, too.
@@ -140,8 +152,7 @@ void GridMixture<has_gas, exchanges>::fold_momenta() {
             if (!touch(wall, axis, inwards, nodes, 0)) return;
             const double before = force[nodes.inside].y;
             fold_momenta(nodes, mirror, even);
-            if (axis == 1)
-                contacts_[static_cast<size_t>(contact_at_[nodes.inside])].weight = force[nodes.inside].y - before;
+            if (axis == 1) contacts_.back().weight = force[nodes.inside].y - before;
         });
     });
 }
@@ -151,11 +162,9 @@ void GridMixture<has_gas, exchanges>::fold_momenta() {
 template <bool has_gas, bool exchanges>
 bool GridMixture<has_gas, exchanges>::presses(const Wall& wall, size_t axis, int32_t inwards, NodePair nodes,
                                               double dt) {
-    const bool is_new = meets_[axis][nodes.beyond] == 0;
+    const bool is_new = contact_beyond_[axis][nodes.beyond] < 0;
     if (is_new && !touch(wall, axis, inwards, nodes, dt)) return false;
-    int32_t number = contact_at_[nodes.inside];
-    while (contacts_[static_cast<size_t>(number)].wall != &wall) number = contacts_[static_cast<size_t>(number)].other;
-    Contact& contact = contacts_[static_cast<size_t>(number)];
+    Contact& contact = contacts_[static_cast<size_t>(contact_beyond_[axis][nodes.beyond])];
     const NodeGradients &inside = gradients[nodes.inside], &beyond = gradients[nodes.beyond];
     const double edge = axis == 0 ? inside.edge_x + beyond.edge_x : inside.edge_y + beyond.edge_y;
     contact.area = std::max(-inwards * edge, 0.0);
