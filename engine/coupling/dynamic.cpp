@@ -3,13 +3,13 @@
 #include "background/locate.hpp"
 #include "error.hpp"
 #include "ground/sides.hpp"
+#include "materials/hydraulic/curves.hpp"
 #include "points/quadrature.hpp"
 #include "points/seeding.hpp"
 #include "scene/problems.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 namespace talus {
@@ -21,9 +21,6 @@ constexpr double rest_time = 1;      // s, the ground rests;
 constexpr double window_falls = 30;  // or where within so many times sqrt(h / g), about that of a fall through a cell,
 constexpr double rest_come = 0.1;    // no point has come further by so much of the cell: elastic ground rings on
 constexpr double most_nodes = 2e7;   // of the grid: 1.3 GB
-
-double sin_degrees(double angle) { return std::sin(angle * std::numbers::pi / 180); }
-double tan_degrees(double angle) { return std::tan(angle * std::numbers::pi / 180); }
 
 // --- from the scene --------------------------------------------------------------------------------------------------
 
@@ -160,6 +157,8 @@ ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
     hydraulics.gas_mobility = hydraulics.mobility / scene.gas.viscosity_ratio;
     hydraulics.residual_water =
         soil.hydraulics.retention.residual_saturation * soil.porosity * scene.water.density / soil.dry_density;
+    if (soil.hydraulics.conductivity.porosity_dependence == PorosityDependence::kozeny_carman)
+        hydraulics.initial_conductance = kozeny_carman(soil.porosity);
     if (soil.solid.model != SolidModel::mohr_coulomb) return hydraulics;
     const Strength& strength = soil.solid.strength;
     if (strength.model == StrengthModel::fredlund)
@@ -168,6 +167,7 @@ ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
         hydraulics.suction_tangent = tan_degrees(strength.friction_angle);
         hydraulics.weighs_suction = true;
     }
+    if (strength.model == StrengthModel::exponential) hydraulics.strength = strength;
     return hydraulics;
 }
 
@@ -619,18 +619,11 @@ MotionReport DynamicGround::report() const {
 std::vector<double> DynamicGround::mobilised_strength() const {
     const FreePoints& points = this->points();
     std::vector<double> mobilised(points.count, 0.0);
-    MaterialBlock block;
-    for (size_t first = 0; first < points.count; first += block_size) {
-        const size_t count = std::min(block_size, points.count - first);
-        set_strength(soils_, points, first, count, cell_size(), block);
-        for (size_t k = 0; k < count; ++k) {
-            const size_t p = first + k;
-            if (!soils_[static_cast<size_t>(points.soil[p])].yields) continue;
-            const MohrCoulomb material{block.cohesion[k], block.sin_friction[k], block.cos_friction[k],
-                                       block.sin_dilation[k], block.tensile_strength[k]};
-            mobilised[static_cast<size_t>(points.number[p])] = talus::mobilised_strength(
-                material, {points[stress_xx][p], points[stress_yy][p], points[stress_zz][p], points[stress_xy][p]});
-        }
+    for (size_t p = 0; p < points.count; ++p) {
+        if (!soils_[static_cast<size_t>(points.soil[p])].yields) continue;
+        const MohrCoulomb material = std::visit([p](const auto& motion) { return motion.strength(p); }, motion_);
+        mobilised[static_cast<size_t>(points.number[p])] = talus::mobilised_strength(
+            material, {points[stress_xx][p], points[stress_yy][p], points[stress_zz][p], points[stress_xy][p]});
     }
     return mobilised;
 }

@@ -1,5 +1,6 @@
 // What flow and boundaries load the skeleton with, and what the points take from the nodes.
 #include "coupling/simulation.hpp"
+#include "materials/hydraulic/curves.hpp"
 #include "points/quadrature.hpp"
 
 #include <algorithm>
@@ -172,11 +173,7 @@ void Simulation::refresh_geometry() {
             initial += initial_volume_[p];
             now += points.volume[p];
         }
-        // Kozeny (1927), Carman (1937): K grows as n^3 / (1 - n)^2.
         const double n = 1.0 - (1.0 - soil.porosity) * initial / now;
-        const auto kozeny_carman = [](double porosity) {
-            return porosity * porosity * porosity / ((1.0 - porosity) * (1.0 - porosity));
-        };
         conductivity_factor_[c] = kozeny_carman(n) / kozeny_carman(soil.porosity);
     }
     talus::refresh_geometry(flow_->network, mesh_, scene_, conductivity_factor_);

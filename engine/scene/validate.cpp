@@ -21,16 +21,6 @@ void check_moving_water(const Check& check, const Scene& scene) {
             .require(
                 !(conductivity.across != conductivity.along),
                 "= " + value_text(conductivity.across) + " m/s: another conductivity than along the bedding" + dynamic);
-        soil.at("hydraulics")
-            .at("conductivity")
-            .at("porosityDependence")
-            .require(conductivity.porosity_dependence == PorosityDependence::none,
-                     "= kozenyCarman:" + dynamic + "; must be none");
-        soil.at("solid")
-            .at("strength")
-            .at("model")
-            .require(scene.soils[i].solid.strength.model != StrengthModel::exponential,
-                     "= exponential:" + dynamic + "; must be constant, fredlund or vanapalli");
     }
     check.at("surface")
         .at("pondingDepth")

@@ -83,7 +83,16 @@ def water_cases():
     yield Case("dynamic/wet_on_a_smooth_base", wet_bank(cohesion=50, walls=(("base", "friction", 1), ("left", "roller", 0))), [["step", 0.1, 20]])
     yield Case("dynamic/full_and_rubbing", wet_bank(2e9, table=2.0, conductivity=1e-9, walls=ROUGH), SLIDE)
     yield Case("dynamic/loose_and_rubbing", wet_bank(conductivity=0.3, walls=ROUGH), SLIDE)
+    yield Case("dynamic/kozeny_carman", conducting_by_porosity(wet_bank(young=1e5, poisson=0)), SLIDE, may_be_refused="too soft for what it bears",
+               why="its pores are closed")
+    yield Case("dynamic/exponential", wet_bank(table=-5.0, strength={"model": "exponential", "cohesionGain": 2e4, "cohesionRate": 10.0, "frictionGain": 30.0}),
+               SLIDE)
     yield Case("dynamic/undrained", wet_bank(2e9, conductivity=1e-13, poisson=0.4999), SLIDE)
+
+
+def conducting_by_porosity(scene):
+    scene["soils"][0]["hydraulics"]["conductivity"]["porosityDependence"] = "kozenyCarman"
+    return scene
 
 
 def gassy_bank(**numbers):
@@ -113,6 +122,7 @@ def gas_cases(sweep, bank):
         yield Case(f"{sweep}/{alpha:g}_{n:g}", bank(alpha=alpha, n=n, table=-1.0), SLIDE)
     yield Case(f"{sweep}/soft_water", bank(water=1e5, conductivity=0.3), SLIDE)
     yield Case(f"{sweep}/rubbing", bank(walls=ROUGH), [["step", 0.1, 20]])
+    yield Case(f"{sweep}/kozeny_carman", conducting_by_porosity(bank()), SLIDE)
     yield Case(f"{sweep}/porous", bank(porosity=0.9), SLIDE)
     yield Case(f"{sweep}/dense", bank(porosity=0.05), SLIDE)
 

@@ -157,15 +157,19 @@ def moving_soil(draw, name, height, is_wet):
     soil = {**random_soil(draw, name), "dryDensity": draw.log_uniform(800, 2800),
             "solid": {"youngModulus": max(2e4, draw.log_uniform(30, 1e6) * WEIGHT * height),
                       "poissonRatio": float(f"{0.5 - draw.log_uniform(1e-3, 0.5):.4f}")}}
-    if not is_wet:
+    if is_wet:
+        soil["hydraulics"]["conductivity"]["porosityDependence"] = draw.choice(("none", "kozenyCarman"))
+    else:
         del soil["hydraulics"]
     if draw.whole(0, 4) == 0:
         soil["solid"]["model"] = "elastic"
         return soil
     cohesion, friction = draw.choice((0, draw.log_uniform(50, 1e5))), draw.uniform(1, 60)
-    wet = ({"model": "vanapalli"}, {"model": "fredlund", "suctionFrictionAngle": draw.uniform(1, 40)}) if is_wet else ()
-    soil["solid"].update(strength={"cohesion": cohesion, "frictionAngle": friction, **draw.choice(({"model": "constant"}, *wet))},
-                         dilationAngle=draw.choice((0, draw.uniform(0, friction))))
+    if is_wet:
+        strength = random_strength(draw, cohesion, friction)
+    else:
+        strength = {"model": "constant", "cohesion": cohesion, "frictionAngle": friction}
+    soil["solid"].update(strength=strength, dilationAngle=draw.choice((0, draw.uniform(0, friction))))
     if draw.choice((True, False)):
         soil["solid"]["softening"] = {"residualCohesion": draw.choice((0, cohesion)), "slip": draw.log_uniform(1e-4, 1),
                                       "residualFrictionAngle": draw.uniform(1, friction)}

@@ -1,6 +1,8 @@
 // Material points that hold water, on the Cartesian background.
 #include "doctest/doctest.h"
+#include "materials/hydraulic/curves.hpp"
 #include "materials/hydraulic/saturation_table.hpp"
+#include "materials/solid/strength.hpp"
 #include "motion/explicit/explicit_mixture.hpp"
 #include "motion/explicit/ground_edge.hpp"
 #include "verification/explicit_cases.hpp"
@@ -101,6 +103,66 @@ TEST_CASE("a soil that does not yield bears what its weak neighbour does not") {
         if (block.points().soil[p] == 0) CHECK(stress == doctest::Approx(1000).epsilon(1e-6));
         if (block.points().soil[p] == 1) CHECK(stress < 100);
     }
+}
+
+TEST_CASE("moist ground in motion bears what its strength at its suction says") {
+    Strength exponential{StrengthModel::exponential, 1e3, 20};
+    exponential.cohesion_gain = 2e4;
+    exponential.cohesion_rate = 5;
+    exponential.friction_gain = 10;
+    FreePoints points = block_of_points(0.1, 0, 0, 4, 4, gas_fields);
+    for (size_t p = 0; p < points.count; ++p) {
+        points[water_mass][p] = 1000 * porosity * 0.8 * points[point_volume][p];
+        points[stress_xy][p] = 1e5;
+    }
+    ExplicitHydraulics hydraulics{grain_density, 1e-10};
+    hydraulics.strength = exponential;
+    const ExplicitSoil soil{elasticity(1e7, 0.3), true, mohr_coulomb(shear_strength(exponential, 0, 1), 0, 1e300)};
+    ExplicitMixture<Filling::unsaturated> block(0.1, {}, 0, {soil}, {hydraulics}, {{loam(), 1e6}}, {1000, 1e6},
+                                                std::move(points), 1);
+    block.step(1e-9, true);
+    for (size_t p = 0; p < block.points().count; ++p) {
+        const ShearStrength at_suction = shear_strength(exponential, -block.pressure(p), 1);
+        const MohrCoulomb material = block.strength(p);
+        CHECK(at_suction.cohesion > 1.5e4);
+        CHECK(material.cohesion == doctest::Approx(at_suction.cohesion).epsilon(1e-9));
+        CHECK(material.sin_friction == doctest::Approx(sin_degrees(at_suction.friction_angle)).epsilon(1e-9));
+        // Shear alone: half the difference of the principal stresses is c cos(phi), the apex being far.
+        CHECK(block.points()[stress_xy][p] == doctest::Approx(material.cohesion * material.cos_friction).epsilon(0.05));
+    }
+}
+
+TEST_CASE("ground in motion conducts by its porosity as Kozeny and Carman have it") {
+    constexpr double cell_size = 0.05, assumed = 0.5;
+    const auto drain = [&]<Filling filling>(double mobility_factor, double conductance) {
+        FreePoints points = wet_column(cell_size, 10, 0.8, gas_fields);
+        for (size_t p = 0; p < points.count; ++p)
+            if (points[position_y][p] > 0.25) points[water_mass][p] *= 1.1;
+        fill_with_air(points);
+        ExplicitHydraulics soil = moist;
+        soil.mobility *= mobility_factor;
+        soil.gas_mobility *= mobility_factor;
+        soil.initial_conductance = conductance;
+        ExplicitMixture<filling> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e11, 0)}}, {soil},
+                                        {{loam(), 1e6}}, {1000, 1e6}, std::move(points), 1);
+        for (int i = 1; i <= 200; ++i) REQUIRE(column.step(1e-5, i == 200));
+        return column.points();
+    };
+    const double factor = kozeny_carman(porosity) / kozeny_carman(assumed);
+    const auto compare = [&]<Filling filling>() {
+        const FreePoints by_law = drain.template operator()<filling>(1, kozeny_carman(assumed));
+        const FreePoints by_hand = drain.template operator()<filling>(factor, 0),
+                         otherwise = drain.template operator()<filling>(1, 0);
+        double off = 0, other = 0;
+        for (size_t p = 0; p < by_law.count; ++p) {
+            off = std::max(off, std::abs(by_law[water_mass][p] - by_hand[water_mass][p]));
+            other = std::max(other, std::abs(by_law[water_mass][p] - otherwise[water_mass][p]));
+        }
+        CHECK(off < 1e-4 * other);
+        CHECK(other > 0);
+    };
+    compare.template operator()<Filling::unsaturated>();
+    compare.template operator()<Filling::three_phase>();
 }
 
 TEST_CASE("wet ground that falls apart loses no water") {

@@ -91,4 +91,6 @@ double suction_scale(const Retention& retention) {
     return positive == retention.suction.end() ? 1.0 : *positive;
 }
 
+double kozeny_carman(double porosity) { return porosity * porosity * porosity / ((1.0 - porosity) * (1.0 - porosity)); }
+
 }  // namespace talus

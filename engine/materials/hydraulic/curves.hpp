@@ -18,6 +18,9 @@ double relative_permeability(const Hydraulics& hydraulics, double suction);
 /// (1 - S_e)^1/2: van Genuchten (Parker, Lenhard & Kuppusamy 1987), Brooks & Corey; the others have Corey's (1954) curve.
 double gas_permeability(const Retention& retention, double suction);
 
+/// n^3 / (1 - n)^2 of a porosity n, by which K grows (Kozeny 1927, Carman 1937).
+double kozeny_carman(double porosity);
+
 /// The suction in Pa over which the retention bends: 1/alpha, or the first positive suction of a table.
 double suction_scale(const Retention& retention);
 

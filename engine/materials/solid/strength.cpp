@@ -11,8 +11,6 @@ namespace {
 constexpr double atmospheric_pressure = 101325;  // Pa
 constexpr double largest_friction_angle = 60;    // degrees
 
-double tan_degrees(double angle) { return std::tan(angle * std::numbers::pi / 180); }
-
 }  // namespace
 
 ShearStrength shear_strength(const Strength& strength, double suction, double effective_saturation) {
@@ -40,9 +38,9 @@ ShearStrength shear_strength(const Strength& strength, double suction, double ef
 ShearStrength softened(const ShearStrength& strength, const Solid& solid, double lost) {
     if (!(solid.softening.slip > 0)) return strength;
     constexpr double degree = std::numbers::pi / 180;
-    const double peak = std::sin(solid.strength.friction_angle * degree);
-    const double residual = std::sin(solid.softening.residual_friction_angle * degree);
-    const double sine = std::sin(strength.friction_angle * degree) + lost * (residual - peak);
+    const double peak = sin_degrees(solid.strength.friction_angle);
+    const double residual = sin_degrees(solid.softening.residual_friction_angle);
+    const double sine = sin_degrees(strength.friction_angle) + lost * (residual - peak);
     return {strength.cohesion + lost * (solid.softening.residual_cohesion - solid.strength.cohesion),
             std::asin(sine) / degree};
 }

@@ -4,8 +4,12 @@
 #include "materials/solid/parameters.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace talus {
+
+inline double sin_degrees(double angle) { return std::sin(angle * std::numbers::pi / 180); }
+inline double tan_degrees(double angle) { return std::tan(angle * std::numbers::pi / 180); }
 
 /// What Mohr-Coulomb takes at one place and time.
 struct ShearStrength {

@@ -1,5 +1,6 @@
 #include "motion/explicit/explicit_mixture.hpp"
 
+#include "materials/hydraulic/curves.hpp"
 #include "motion/explicit/fluid_gifts.hpp"
 
 #include <algorithm>
@@ -24,6 +25,18 @@ void add_apparent_cohesion(const std::vector<ExplicitHydraulics>& hydraulics, co
         const ExplicitHydraulics& soil = hydraulics[static_cast<size_t>(points.soil[first + k])];
         const double weight = soil.weighs_suction ? effective_saturation[k] : 1.0;
         material.cohesion[k] += soil.suction_tangent * weight * suction[k];
+    }
+}
+
+void add_exponential_strength(const std::vector<ExplicitHydraulics>& hydraulics, const FreePoints& points, size_t first,
+                              size_t count, const BlockValues& suction, MaterialBlock& material) {
+    for (size_t k = 0; k < count; ++k) {
+        const Strength& strength = hydraulics[static_cast<size_t>(points.soil[first + k])].strength;
+        if (strength.model != StrengthModel::exponential) continue;
+        const ShearStrength gained = shear_strength(strength, suction[k], 1.0);
+        material.cohesion[k] += gained.cohesion - strength.cohesion;
+        material.sin_friction[k] += sin_degrees(gained.friction_angle) - sin_degrees(strength.friction_angle);
+        material.cos_friction[k] = std::sqrt(1 - material.sin_friction[k] * material.sin_friction[k]);
     }
 }
 
@@ -52,7 +65,11 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
         yields_ = yields_ || soil.yields;
         is_inertial_ = is_inertial_ || soil.friction_rise > 0;
     }
-    for (const ExplicitHydraulics& soil : hydraulics_) grain_volume_.push_back(1 / soil.grain_density);
+    for (const ExplicitHydraulics& soil : hydraulics_) {
+        grain_volume_.push_back(1 / soil.grain_density);
+        gains_exponentially_ = gains_exponentially_ || soil.strength.model == StrengthModel::exponential;
+        follows_porosity_ = follows_porosity_ || soil.initial_conductance > 0;
+    }
     nodes_.threads = arrangement_.threads();
     nodes_.grid.cell_size = cell_size;
     nodes_.walls = walls;
@@ -210,6 +227,43 @@ void ExplicitMixture<filling>::find_fluids(size_t first, size_t count, FluidBloc
     }
     if constexpr (filling == Filling::three_phase) share_pores(first, count, fluids);
     if constexpr (exchanges) find_partitions(first, count, fluids);
+    if (follows_porosity_) follow_porosity(first, count, fluids);
+}
+
+/// By which a point's ground conducts better than its soil does at the scene's porosity.
+template <Filling filling>
+double ExplicitMixture<filling>::conductance_factor(size_t p) const {
+    const ExplicitHydraulics& soil = hydraulics_[static_cast<size_t>(points_.soil[p])];
+    if (!(soil.initial_conductance > 0)) return 1;
+    constexpr double least_porosity = 1e-6;
+    const double grains = points_[solid_mass][p] / (soil.grain_density * points_[point_volume][p]);
+    return kozeny_carman(std::max(1 - grains, least_porosity)) / soil.initial_conductance;
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::follow_porosity(size_t first, size_t count, FluidBlock& fluids) const {
+    for (size_t k = 0; k < count; ++k) {
+        const double factor = conductance_factor(first + k);
+        if constexpr (has_gas) {
+            fluids.mobility[k] *= factor;
+            fluids.edge_mobility[k] *= factor;
+            fluids.gas_mobility[k] *= factor;
+        } else {
+            fluids.resistance[k] /= factor;
+        }
+    }
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::find_strength(size_t first, size_t count, [[maybe_unused]] const FluidBlock& fluids,
+                                             MaterialBlock& material) const {
+    set_strength(soils_, points_, first, count, nodes_.grid.cell_size, material);
+    if constexpr (filling != Filling::saturated) {
+        add_apparent_cohesion(hydraulics_, points_, first, count, fluids.suction, fluids.effective_saturation,
+                              material);
+        if (gains_exponentially_)
+            add_exponential_strength(hydraulics_, points_, first, count, fluids.suction, material);
+    }
 }
 
 /// Water and gas of a block of points, from their masses.
@@ -385,11 +439,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
         if constexpr (exchanges) settle(first, count, fluids);
         if constexpr (has_gas) find_potential(first, count, fluids);
         if (yields_) {
-            set_strength(soils_, points_, first, count, nodes_.grid.cell_size, material);
-            if constexpr (filling != Filling::saturated) {
-                add_apparent_cohesion(hydraulics_, points_, first, count, fluids.suction, fluids.effective_saturation,
-                                      material);
-            }
+            find_strength(first, count, fluids, material);
             if (is_inertial_) add_inertial_friction(soils_, points_, first, count, gradient, material);
             return_stresses(points_, first, count, material);
         }
@@ -585,7 +635,7 @@ typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_
     const double filled = share_filled(p), stiffness = filled * table.stiffness(filled);
     const bool is_borne = water_.pore_stress == PoreStress::bishop;
     const double borne = is_borne ? std::clamp(table.effective(filled), 0.0, 1.0) * stiffness : 0.0;
-    const double mobility = hydraulics_[soil].mobility * table.at(filled).permeability;
+    const double mobility = hydraulics_[soil].mobility * conductance_factor(p) * table.at(filled).permeability;
     const double creep = 2 * stiffness * mobility / (porosity * nodes_.grid.cell_size);
     const auto both = [](double pores, double retention) {
         return has_gas ? pores + retention : std::max(pores, retention);
@@ -650,6 +700,15 @@ double ExplicitMixture<filling>::pore_stress(const FluidBlock& fluids, size_t k)
     }
     if (filling == Filling::saturated || pressure > 0) return pressure;
     return water_.pore_stress == PoreStress::bishop ? fluids.effective_saturation[k] * pressure : 0.0;
+}
+
+template <Filling filling>
+MohrCoulomb ExplicitMixture<filling>::strength(size_t point) const {
+    FluidBlock fluids{};
+    MaterialBlock material;
+    find_fluids(point, 1, fluids);
+    find_strength(point, 1, fluids, material);
+    return material.at(0);
 }
 
 template <Filling filling>

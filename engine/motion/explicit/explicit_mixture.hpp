@@ -8,6 +8,7 @@
 #include "materials/hydraulic/fluid_exchange.hpp"
 #include "materials/hydraulic/saturation_table.hpp"
 #include "materials/hydraulic/shared_pores.hpp"
+#include "materials/solid/strength.hpp"
 #include "motion/explicit/arrangement.hpp"
 #include "motion/explicit/explicit_motion.hpp"
 #include "motion/explicit/grid_mixture.hpp"
@@ -31,6 +32,9 @@ struct ExplicitHydraulics {
     double gas_mobility = 0;  ///< of the dry soil, kappa / mu_g, m2/(Pa s); three phases only
     double residual_water =
         0;  ///< that does not flow, kg per kg of solid: what fills the pores at the start to the residual saturation
+    /// Kozeny's and Carman's n^3 / (1 - n)^2 at the scene's porosity, where K grows with it; 0: it does not.
+    double initial_conductance = 0;
+    Strength strength{};  ///< read where it is exponential, in place of suction_tangent
 };
 
 /// What of the pore pressures the skeleton does not bear: max(p_l, p_g), or S_e p_l + (1 - S_e) p_g (physics.md).
@@ -94,6 +98,8 @@ public:
     [[nodiscard]] double saturation(size_t point) const;
     [[nodiscard]] double relative_humidity(size_t point) const;  ///< with exchange alone
     [[nodiscard]] double dissolved_air(size_t point) const;      ///< kg per m3 of water; likewise
+    /// What a point's stress may come to, at its slip and its suction.
+    [[nodiscard]] MohrCoulomb strength(size_t point) const;
     /// What the points' stress is short of the total one, Pa.
     [[nodiscard]] double pore_stress(size_t point) const;
 
@@ -134,6 +140,9 @@ private:
     void owe_water(Strip strip);
     void gather_rates(size_t count, const SplineBlock& spline, VelocityBlock& rates, VelocityBlock& gas_rates) const;
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
+    [[nodiscard]] double conductance_factor(size_t p) const;
+    void follow_porosity(size_t first, size_t count, FluidBlock& fluids) const;
+    void find_strength(size_t first, size_t count, const FluidBlock& fluids, MaterialBlock& material) const;
     void find_pores(size_t first, size_t count, BlockValues& pores) const;
     void find_gas_weights(size_t first, size_t count, BlockValues& weight) const;
     void share_pores(size_t first, size_t count, FluidBlock& fluids) const;
@@ -173,9 +182,11 @@ private:
     FluidExchange exchange_;
     GridMixture<has_gas, exchanges> nodes_;
     Arrangement arrangement_;
-    bool restarted_ = false;    // and the points not yet got what is due
-    bool yields_ = false;       // any soil
-    bool is_inertial_ = false;  // likewise: whether its friction grows with the rate of shear
+    bool restarted_ = false;            // and the points not yet got what is due
+    bool yields_ = false;               // any soil
+    bool is_inertial_ = false;          // likewise: whether its friction grows with the rate of shear
+    bool gains_exponentially_ = false;  // likewise: whether its strength is exponential
+    bool follows_porosity_ = false;     // likewise: whether it conducts by its porosity
     std::function<double(double)> rain_;
     double wave_speed_ = 0;  // m/s, the fastest when the points were arranged or looked at, were all pores full
 };

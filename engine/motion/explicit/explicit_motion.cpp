@@ -191,6 +191,12 @@ void ExplicitMotion::find_wave_speed() {
     }
 }
 
+MohrCoulomb ExplicitMotion::strength(size_t point) const {
+    MaterialBlock material;
+    set_strength(soils_, points_, point, 1, nodes_.grid.cell_size, material);
+    return material.at(0);
+}
+
 double ExplicitMotion::critical_step() const {
     constexpr double share =
         0.5;  // energy is kept within 1 % over a period of 200 cells' length (docs/verification.md)

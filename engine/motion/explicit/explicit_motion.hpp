@@ -45,6 +45,9 @@ public:
 
     [[nodiscard]] Energies energies() const { return energies_of(points_, soils_, nodes_.gravity); }
 
+    /// What a point's stress may come to, at its slip.
+    [[nodiscard]] MohrCoulomb strength(size_t point) const;
+
     [[nodiscard]] const FreePoints& points() const { return points_; }
     [[nodiscard]] FreePoints& points() { return points_; }
     [[nodiscard]] const Grid& grid() const { return nodes_.grid; }

@@ -55,8 +55,7 @@ void return_unfinished(FreePoints& points, size_t first, size_t count, const Mat
     for (size_t k = 0; k < count; ++k) {
         if (block.unfinished[k] == 0) continue;
         const size_t p = first + k;
-        const MohrCoulomb material{block.cohesion[k], block.sin_friction[k], block.cos_friction[k],
-                                   block.sin_dilation[k], block.tensile_strength[k]};
+        const MohrCoulomb material = block.at(k);
         const PlasticReturn result = return_to_yield_surface(
             {block.lame[k], block.shear[k]}, material,
             {points[stress_xx][p], points[stress_yy][p], points[stress_zz][p], points[stress_xy][p]}, nullptr);

@@ -44,6 +44,9 @@ inline double share_lost(const ExplicitSoil& soil, double plastic_strain, double
 struct MaterialBlock {
     BlockValues lame, shear;                                                           // Pa
     BlockValues cohesion, sin_friction, cos_friction, sin_dilation, tensile_strength;  // as in MohrCoulomb
+    [[nodiscard]] MohrCoulomb at(size_t k) const {
+        return {cohesion[k], sin_friction[k], cos_friction[k], sin_dilation[k], tensile_strength[k]};
+    }
     std::array<int64_t, block_size> unfinished;  // whether a stress needs more than the return to the main plane
 };
 
