@@ -19,10 +19,11 @@ constexpr double stage_share = 1e-4;  // of the tolerance: what Newton's method 
 constexpr double loosest_stage = 1e-6;  // and at most this
 constexpr double end_tolerance = 1e-9;  // likewise, at the end of an advance, where a host may look
 constexpr double balance = 1e-9;        // of the water that crossed the edge of the ground until then,
-constexpr double most_guessed = 3.0;    // of their last change that the pressures are taken to go on by
-constexpr double end_share = 1e-9;      // of an advance: round-off in its times
-constexpr int most_refusals = 6;  // of last substeps for the balance's sake: a node without water has none to give
-constexpr double little = 1e-6;   // or, where less than this of the water stored did, of that: beyond it is rounding
+constexpr double most_guessed =
+    2.0;  // of their last change that the pressures are taken to go on by (docs/architecture.md)
+constexpr double end_share = 1e-9;  // of an advance: round-off in its times
+constexpr int most_refusals = 6;    // of last substeps for the balance's sake: a node without water has none to give
+constexpr double little = 1e-6;     // or, where less than this of the water stored did, of that: beyond it is rounding
 
 void check(int flag, const char* call) {
     if (flag != 0) throw Error(Status::internal, std::string("SUNDIALS ") + call + " returned " + std::to_string(flag));
@@ -68,7 +69,7 @@ struct FlowIntegrator::Arkode {
     double stage_time = 0;
     double duration = 0;  // s, of the advance
     int refusals = 0;     // of its last substeps
-    std::vector<double> target;
+    std::vector<double> target, guess;
 
     Arkode(FlowSystem& system_in, double tolerance_in, double pressure_tolerance_in);
     ~Arkode();
@@ -79,7 +80,7 @@ struct FlowIntegrator::Arkode {
     void make_memory();
     [[nodiscard]] bool is_end(double t) const { return t >= (1.0 - end_share) * duration; }
     [[nodiscard]] StageAccuracy accuracy(double t, double gamma) const;
-    void guess_stage(double t);
+    bool find_stage(double t, double gamma);
     int solve_stage(N_Vector correction);
 
     static Arkode& of(SUNNonlinearSolver solver) { return *static_cast<Arkode*>(solver->content); }
@@ -94,6 +95,7 @@ FlowIntegrator::Arkode::Arkode(FlowSystem& system_in, double tolerance_in, doubl
     accepted.resize(nodes);
     stage.resize(nodes);
     target.resize(nodes);
+    guess.resize(nodes);
     check(SUNContext_Create(nullptr, &context), "SUNContext_Create");
     variables = N_VNew_Serial(static_cast<sunindextype>(nodes + flow_total_count), context);
     variables->ops->nvwrmsnorm = largest_weighted;
@@ -180,16 +182,23 @@ StageAccuracy FlowIntegrator::Arkode::accuracy(double t, double gamma) const {
     return {end_tolerance, balance * std::max(moved, little * stored), pressure_tolerance};
 }
 
-// What Newton's method starts from: the pressures go on as they last did, between two substeps or two stages.
-void FlowIntegrator::Arkode::guess_stage(double t) {
+// Newton's method starts from pressures that go on as they last did, between two substeps or two stages; where that comes to nothing, from the last ones.
+bool FlowIntegrator::Arkode::find_stage(double t, double gamma) {
     const bool is_later = accepted_time < stage_time && stage_time < t;
     const std::vector<double>& from = is_later ? accepted : earlier;
     const double from_time = is_later ? accepted_time : earlier_time;
     const double last_time = is_later ? stage_time : accepted_time;
     if (!is_later) stage = accepted;
-    if (from_time >= last_time) return;
-    const double share = std::min((t - last_time) / (last_time - from_time), most_guessed);
-    for (size_t i = 0; i < stage.size(); ++i) stage[i] = system.moved(i, stage[i], share * (stage[i] - from[i]));
+    const StageAccuracy wanted = accuracy(t, gamma);
+    if (from_time < last_time) {
+        const double share = std::min((t - last_time) / (last_time - from_time), most_guessed);
+        for (size_t i = 0; i < stage.size(); ++i) guess[i] = system.moved(i, stage[i], share * (stage[i] - from[i]));
+        if (solver.solve(t, gamma, target, wanted, guess)) {
+            std::swap(stage, guess);
+            return true;
+        }
+    }
+    return solver.solve(t, gamma, target, wanted, stage);
 }
 
 // One stage z = known + gamma rate(z), where known = predicted + sdata. What the nodes hold after it is defined by the flows, not by the
@@ -206,8 +215,7 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
     const double* before = N_VGetArrayPointer(predicted);
     const double* change = N_VGetArrayPointer(known);
     for (size_t i = 0; i < target.size(); ++i) target[i] = initial[i] + (before[i] + change[i]);
-    guess_stage(t);
-    if (!solver.solve(t, gamma, target, accuracy(t, gamma), stage)) {
+    if (!find_stage(t, gamma)) {
         if (is_end(t)) ++refusals;
         stage_time = accepted_time;
         return SUN_NLS_CONV_RECVR;

@@ -261,6 +261,7 @@ struct Solid {
 struct Softening {
   # Cohesion and friction fall from those of the strength to residual ones, in proportion to the slip on a shear band, and stay there.
   # The slip is the plastic shear strain times sqrt(3) times the size of a cell, so that what a band dissipates does not depend on that.
+  # What slip takes (of the friction angle, off its sine) does not depend on the suction.
   residualCohesion @0 :Float64 = nan $limits(unit = "Pa", low = 50, high = 1e10, orZero = true, slips = .pressureSlips);
   # Required, at most the cohesion.
   residualFrictionAngle @1 :Float64 = nan $limits(unit = "degrees", low = 1, high = 60, orZero = true, slips = .angleSlips);

@@ -38,6 +38,8 @@ def strength_of(entries, suction, saturation):
         cohesion = cohesion + gain * (1 - numpy.exp(-rate * suction / ATMOSPHERE))
         gained = friction + entries.get("frictionGain", 0.0) * suction / ATMOSPHERE
         friction = numpy.where(suction > 0, numpy.minimum(gained, LARGEST_FRICTION), friction)
+    if "lostSine" in entries:  # to slip, whatever the suction
+        friction = numpy.degrees(numpy.arcsin(numpy.sin(numpy.radians(friction)) - entries["lostSine"]))
     return cohesion, friction
 
 
@@ -72,7 +74,7 @@ def reached(solid):
         return [first]
     sines = [numpy.sin(numpy.radians(angle)) for angle in (first["frictionAngle"], rest["residualFrictionAngle"])]
     return [{**first, "suctionGainAngle": first["frictionAngle"], "cohesion": (1 - lost) * first["cohesion"] + lost * rest["residualCohesion"],
-             "frictionAngle": float(numpy.degrees(numpy.arcsin((1 - lost) * sines[0] + lost * sines[1])))}
+             "lostSine": lost * (sines[0] - sines[1])}
             for lost in numpy.linspace(0, 1, STATES)]
 
 

@@ -80,7 +80,7 @@ double GridMixture<has_gas, exchanges>::force_across(NodePair nodes, size_t axis
 /// the other as those inside it.
 template <bool has_gas, bool exchanges>
 bool GridMixture<has_gas, exchanges>::touch(const Wall& wall, size_t axis, int32_t inwards, NodePair nodes, double dt) {
-    const auto [inside, beyond] = nodes;
+    const size_t inside = nodes.inside, beyond = nodes.beyond;
     Contact contact{&wall, axis, inwards};
     const auto add = [&](const std::vector<NodeMomentum>& phase, double& difference) {
         difference = phase[inside].mass - phase[beyond].mass;
