@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 namespace talus {
 namespace {
@@ -19,11 +18,9 @@ constexpr double stage_share = 1e-4;  // of the tolerance: what Newton's method 
 constexpr double loosest_stage = 1e-6;  // and at most this
 constexpr double end_tolerance = 1e-9;  // likewise, at the end of an advance, where a host may look
 constexpr double balance = 1e-9;        // of the water that crossed the edge of the ground until then,
-constexpr double most_guessed =
-    2.0;  // of their last change that the pressures are taken to go on by (docs/architecture.md)
-constexpr double end_share = 1e-9;  // of an advance: round-off in its times
-constexpr int most_refusals = 6;    // of last substeps for the balance's sake: a node without water has none to give
-constexpr double little = 1e-6;     // or, where less than this of the water stored did, of that: beyond it is rounding
+constexpr double end_share = 1e-9;      // of an advance: round-off in its times
+constexpr int most_refusals = 6;  // of last substeps for the balance's sake: a node without water has none to give
+constexpr double little = 1e-6;   // or, where less than this of the water stored did, of that: beyond it is rounding
 
 void check(int flag, const char* call) {
     if (flag != 0) throw Error(Status::internal, std::string("SUNDIALS ") + call + " returned " + std::to_string(flag));
@@ -61,15 +58,13 @@ struct FlowIntegrator::Arkode {
     SUNNonlinearSolver nonlinear_solver = nullptr;
     void* memory = nullptr;
     std::vector<double> initial;   // stored water where the advance began, m3
-    std::vector<double> earlier;   // pressures at the substep finished before the last
     std::vector<double> accepted;  // pressures at the last finished substep
     std::vector<double> stage;     // pressures at the last stage solved
-    double earlier_time = 0;
-    double accepted_time = 0;
     double stage_time = 0;
+    double accepted_time = 0;
     double duration = 0;  // s, of the advance
     int refusals = 0;     // of its last substeps
-    std::vector<double> target, guess;
+    std::vector<double> target;
 
     Arkode(FlowSystem& system_in, double tolerance_in, double pressure_tolerance_in);
     ~Arkode();
@@ -80,7 +75,6 @@ struct FlowIntegrator::Arkode {
     void make_memory();
     [[nodiscard]] bool is_end(double t) const { return t >= (1.0 - end_share) * duration; }
     [[nodiscard]] StageAccuracy accuracy(double t, double gamma) const;
-    bool find_stage(double t, double gamma);
     int solve_stage(N_Vector correction);
 
     static Arkode& of(SUNNonlinearSolver solver) { return *static_cast<Arkode*>(solver->content); }
@@ -95,7 +89,6 @@ FlowIntegrator::Arkode::Arkode(FlowSystem& system_in, double tolerance_in, doubl
     accepted.resize(nodes);
     stage.resize(nodes);
     target.resize(nodes);
-    guess.resize(nodes);
     check(SUNContext_Create(nullptr, &context), "SUNContext_Create");
     variables = N_VNew_Serial(static_cast<sunindextype>(nodes + flow_total_count), context);
     variables->ops->nvwrmsnorm = largest_weighted;
@@ -144,7 +137,7 @@ void FlowIntegrator::Arkode::start(const FlowState& state) {
     accepted = state.pressure;
     solver.forget();
     system.evaluate(0.0, accepted);  // for the error weights
-    stage_time = accepted_time = earlier_time = 0.0;
+    stage_time = accepted_time = 0.0;
     make_memory();
 }
 
@@ -182,25 +175,6 @@ StageAccuracy FlowIntegrator::Arkode::accuracy(double t, double gamma) const {
     return {end_tolerance, balance * std::max(moved, little * stored), pressure_tolerance};
 }
 
-// Newton's method starts from pressures that go on as they last did, between two substeps or two stages; where that comes to nothing, from the last ones.
-bool FlowIntegrator::Arkode::find_stage(double t, double gamma) {
-    const bool is_later = accepted_time < stage_time && stage_time < t;
-    const std::vector<double>& from = is_later ? accepted : earlier;
-    const double from_time = is_later ? accepted_time : earlier_time;
-    const double last_time = is_later ? stage_time : accepted_time;
-    if (!is_later) stage = accepted;
-    const StageAccuracy wanted = accuracy(t, gamma);
-    if (from_time < last_time) {
-        const double share = std::min((t - last_time) / (last_time - from_time), most_guessed);
-        for (size_t i = 0; i < stage.size(); ++i) guess[i] = system.moved(i, stage[i], share * (stage[i] - from[i]));
-        if (solver.solve(t, gamma, target, wanted, guess)) {
-            std::swap(stage, guess);
-            return true;
-        }
-    }
-    return solver.solve(t, gamma, target, wanted, stage);
-}
-
 // One stage z = known + gamma rate(z), where known = predicted + sdata. What the nodes hold after it is defined by the flows, not by the
 // retention curve: Newton's remainder stays in the stored water and enters the next stage's equation, so no water is ever lost to it.
 int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
@@ -215,7 +189,8 @@ int FlowIntegrator::Arkode::solve_stage(N_Vector correction) {
     const double* before = N_VGetArrayPointer(predicted);
     const double* change = N_VGetArrayPointer(known);
     for (size_t i = 0; i < target.size(); ++i) target[i] = initial[i] + (before[i] + change[i]);
-    if (!find_stage(t, gamma)) {
+    if (stage_time <= accepted_time || stage_time >= t) stage = accepted;
+    if (!solver.solve(t, gamma, target, accuracy(t, gamma), stage)) {
         if (is_end(t)) ++refusals;
         stage_time = accepted_time;
         return SUN_NLS_CONV_RECVR;
@@ -256,8 +231,8 @@ AdvanceResult FlowIntegrator::advance(FlowState& state, double duration, const A
             result = AdvanceResult::failed;
             break;
         }
-        ark.earlier = std::exchange(ark.accepted, ark.stage);
-        ark.earlier_time = std::exchange(ark.accepted_time, t);
+        ark.accepted = ark.stage;
+        ark.accepted_time = t;
         if (t < duration || state.substep <= 0) ARKStepGetCurrentStep(ark.memory, &state.substep);
         if (after_substep(t, ark.accepted)) result = AdvanceResult::cancelled;
     }

@@ -110,16 +110,6 @@ bool StageSolver::solve(double t, double step, std::span<const double> target, S
                 break;
             }
         }
-        // A whole step that leaves as much on the other side of a kink of the curves went twice as far as it should.
-        if (is_fresh && length == 1.0 && merit_ > gaining * merit && merit_ < merit) {
-            const double whole = merit_;
-            move(pressure, 0.5);
-            trial_error = residual(t, step, target, trial_, trial_beyond_);
-            if (merit_ > whole) {
-                move(pressure, 1.0);
-                trial_error = residual(t, step, target, trial_, trial_beyond_);
-            }
-        }
         is_stale = !(merit_ < good_contraction * merit);
         const bool is_round_off = is_fresh && largest_relative_change(pressure, change_, trial_) < round_off;
         if (!(merit_ < merit) &&
