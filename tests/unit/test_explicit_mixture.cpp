@@ -167,8 +167,8 @@ TEST_CASE("ground in motion conducts by its porosity as Kozeny and Carman have i
 
 TEST_CASE("wet ground that falls apart loses no water") {
     constexpr double cell_size = 0.1;
-    for (const WallKind kind : {WallKind::fixed, WallKind::friction}) {
-        const Walls walls{{WallKind::friction, 0.95, 0.5}, {}, {kind, 0, 0.3}};
+    const Wall fixed{WallKind::fixed, 0, 0}, rough{WallKind::friction, 0, 0.3}, behind{WallKind::friction, 0.95, 0.5};
+    for (const Walls& walls : {Walls{{}, {}, fixed}, Walls{behind, {}, fixed}, Walls{behind, {}, rough}}) {
         FreePoints points = block_of_points(cell_size, 1, 0, 5, 10, gas_fields);
         for (size_t p = 0; p < points.count; ++p)
             points[water_mass][p] = 1000 * porosity * 0.9 * points[point_volume][p];

@@ -205,7 +205,7 @@ private:
     void for_each_meeting(const Use& use) const;
     [[nodiscard]] std::ptrdiff_t to_inner(size_t node, size_t axis) const;
     template <class Use>
-    void for_each_pair_in_turn(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const;
+    void for_each_wall_pair(const Use& use) const;
     [[nodiscard]] bool is_held_below(size_t node, size_t axis, std::ptrdiff_t inner) const;
     void forget_contacts();
     bool touch(const Wall& wall, size_t axis, int32_t inwards, NodePair nodes, double dt);
@@ -252,18 +252,30 @@ private:
         contact_beyond_;  // likewise, by the axis across the wall: that it is the outer node of
 };
 
+/// use(wall, axis, inwards, nodes) for every pair along every wall; along one with friction, those beyond another wall last.
+template <bool has_gas, bool exchanges>
+template <class Use>
+void GridMixture<has_gas, exchanges>::for_each_wall_pair(const Use& use) const {
+    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
+        if (wall.kind == WallKind::none) return;
+        const auto use_pair = [&](NodePair nodes) { use(wall, axis, inwards, nodes); };
+        if (wall.kind != WallKind::friction) return for_each_pair(wall, axis, inwards, use_pair);
+        for (const bool is_last : {false, true}) {
+            for_each_pair(wall, axis, inwards, [&](NodePair nodes) {
+                if ((to_inner(nodes.inside, axis) != 0) == is_last) use_pair(nodes);
+            });
+        }
+    });
+}
+
 /// use(nodes, mirror, even) for every pair along a roller or a fixed wall, and where the ground is on a wall with friction. `even` is what water and
 /// scalars see, to which every wall is a roller.
 template <bool has_gas, bool exchanges>
 template <class Use>
 void GridMixture<has_gas, exchanges>::for_each_meeting(const Use& use) const {
-    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
-        if (wall.kind == WallKind::none) return;
-        const bool rubs = wall.kind == WallKind::friction;
-        const Mirror mirror = mirror_of(wall, axis), even = even_mirror(axis);
-        for_each_pair(wall, axis, inwards, [&](NodePair nodes) {
-            if (!rubs || contact_beyond_[axis][nodes.beyond] >= 0) use(nodes, mirror, even);
-        });
+    for_each_wall_pair([&](const Wall& wall, size_t axis, int32_t, NodePair nodes) {
+        if (wall.kind != WallKind::friction || contact_beyond_[axis][nodes.beyond] >= 0)
+            use(nodes, mirror_of(wall, axis), even_mirror(axis));
     });
 }
 

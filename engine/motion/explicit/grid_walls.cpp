@@ -46,18 +46,6 @@ std::ptrdiff_t GridMixture<has_gas, exchanges>::to_inner(size_t node, size_t axi
     return is_beyond(walls.left, 1, column) ? 1 : is_beyond(walls.right, -1, column) ? -1 : 0;
 }
 
-/// use(nodes) for the pairs along a wall, those beyond another wall last.
-template <bool has_gas, bool exchanges>
-template <class Use>
-void GridMixture<has_gas, exchanges>::for_each_pair_in_turn(const Wall& wall, size_t axis, int32_t inwards,
-                                                            const Use& use) const {
-    for (const bool is_last : {false, true}) {
-        for_each_pair(wall, axis, inwards, [&](NodePair nodes) {
-            if ((to_inner(nodes.inside, axis) != 0) == is_last) use(nodes);
-        });
-    }
-}
-
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::forget_contacts() {
     contacts_.clear();
@@ -143,17 +131,12 @@ template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::fold_momenta() {
     rubs_ = rubs_along_walls();
     if (rubs_) forget_contacts();
-    for_each_wall([this](const Wall& wall, size_t axis, int32_t inwards) {
-        if (wall.kind == WallKind::none) return;
-        const Mirror mirror = mirror_of(wall, axis), even = even_mirror(axis);
-        if (wall.kind != WallKind::friction)
-            return for_each_pair(wall, axis, inwards, [&](NodePair nodes) { fold_momenta(nodes, mirror, even); });
-        for_each_pair_in_turn(wall, axis, inwards, [&](NodePair nodes) {
-            if (!touch(wall, axis, inwards, nodes, 0)) return;
-            const double before = force[nodes.inside].y;
-            fold_momenta(nodes, mirror, even);
-            if (axis == 1) contacts_.back().weight = force[nodes.inside].y - before;
-        });
+    for_each_wall_pair([this](const Wall& wall, size_t axis, int32_t inwards, NodePair nodes) {
+        const bool rubs = wall.kind == WallKind::friction;
+        if (rubs && !touch(wall, axis, inwards, nodes, 0)) return;
+        const double before = force[nodes.inside].y;
+        fold_momenta(nodes, mirror_of(wall, axis), even_mirror(axis));
+        if (rubs && axis == 1) contacts_.back().weight = force[nodes.inside].y - before;
     });
 }
 
@@ -196,14 +179,9 @@ void GridMixture<has_gas, exchanges>::fold_forces(NodePair nodes, const Mirror& 
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::fold_forces(double dt) {
-    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
-        if (wall.kind == WallKind::none) return;
-        const Mirror mirror = mirror_of(wall, axis), even = even_mirror(axis);
-        if (wall.kind != WallKind::friction)
-            return for_each_pair(wall, axis, inwards, [&](NodePair nodes) { fold_forces(nodes, mirror, even); });
-        for_each_pair_in_turn(wall, axis, inwards, [&](NodePair nodes) {
-            if (presses(wall, axis, inwards, nodes, dt)) fold_forces(nodes, mirror, even);
-        });
+    for_each_wall_pair([&](const Wall& wall, size_t axis, int32_t inwards, NodePair nodes) {
+        if (wall.kind != WallKind::friction || presses(wall, axis, inwards, nodes, dt))
+            fold_forces(nodes, mirror_of(wall, axis), even_mirror(axis));
     });
     if constexpr (exchanges) fold_solute_means();
 }
