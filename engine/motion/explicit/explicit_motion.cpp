@@ -83,9 +83,11 @@ void ExplicitMotion::hold_points() {
         nodes_.held[i].x = force[i].x;
         nodes_.held[i].y = force[i].y - nodes_.gravity * nodes_.held[i].mass;
     }
-    nodes_.for_each_mirror([this](NodePair pair, const Mirror& mirror) {
+    const auto come_inside = [this](NodePair pair, const Mirror& mirror, const Mirror&) {
         move_inside(nodes_.held[pair.inside], nodes_.held[pair.beyond], mirror);
-    });
+    };
+    nodes_.for_each_level_mirror(come_inside);
+    nodes_.for_each_upright_mirror(come_inside);
     nodes_.momentum.assign(nodes, {});
     nodes_.force.assign(nodes, {});
     std::vector<NodeVector> velocity(nodes);

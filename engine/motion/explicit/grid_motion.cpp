@@ -6,20 +6,13 @@
 
 namespace talus {
 
-/// Beyond a wall the nodes move as the mirrored ground would, so that what is interpolated on the wall is zero across it, and along it
-/// where it is fixed.
-void GridMotion::mirror() {
-    for_each_mirror([this](NodePair nodes, const Mirror& sign) {
-        velocity[nodes.beyond] = mirrored(velocity[nodes.inside], sign);
-    });
-}
-
-/// use(node, bound of a part's speeds), for the parts of the grid at the same time.
+/// use(part, bound of its speeds), for the parts of the grid at the same time.
 template <class Use>
 void GridMotion::for_each_part(const Use& use) {
+    bounds_.assign(parts(), SpeedBound(least_mass));
     threads.for_each(parts(), [&](size_t part) {
         SpeedBound bound(least_mass);
-        for_each_node_of(part, [&](size_t node) { use(node, bound); });
+        use(part, bound);
         bounds_[part] = bound;
     });
 }
@@ -36,40 +29,72 @@ double GridMotion::bound_of_speed() {
     return bound.value();
 }
 
+/// Beyond a wall the nodes move as the mirrored ground would, so that what is interpolated on the wall is zero across it, and along it
+/// where it is fixed.
+void GridMotion::mirror(NodePair nodes, const Mirror& sign) {
+    velocity[nodes.beyond] = mirrored(velocity[nodes.inside], sign);
+}
+
+void GridMotion::mirror_upright(size_t part) {
+    for_each_upright_mirror_of(part,
+                               [this](NodePair nodes, const Mirror& sign, const Mirror&) { mirror(nodes, sign); });
+}
+
+void GridMotion::mirror_level() {
+    for_each_level_mirror([this](NodePair nodes, const Mirror& sign, const Mirror&) { mirror(nodes, sign); });
+}
+
 void GridMotion::begin_step() {
-    bounds_.assign(parts(), SpeedBound(least_mass));
-    for_each_mirror([this](NodePair nodes, const Mirror& sign) {
+    const bool rubs = rubs_along_walls();
+    const auto come_inside = [this](NodePair nodes, const Mirror& sign, const Mirror&) {
         move_inside(force[nodes.inside], force[nodes.beyond], sign, gravity * momentum[nodes.beyond].mass);
         move_inside(momentum[nodes.inside], momentum[nodes.beyond], sign);
-    });
-    for_each_part([this](size_t node, SpeedBound& bound) {
-        force[node].y -= gravity * momentum[node].mass;
-        if (!held.empty() && momentum[node].mass > 0) momentum[node].mass += held[node].mass;
-        const double inverse = momentum[node].mass > 0 ? 1 / momentum[node].mass : 0;
-        velocity[node] = velocity_of(momentum[node].x, momentum[node].y, inverse);
-        bound.add(momentum[node].mass, velocity[node]);
+    };
+    for_each_level_mirror(come_inside);
+    for_each_part([&](size_t part, SpeedBound& bound) {
+        for_each_upright_mirror_of(part, come_inside);
+        for_each_node_of(part, [&](size_t node) {
+            force[node].y -= gravity * momentum[node].mass;
+            if (!held.empty() && momentum[node].mass > 0) momentum[node].mass += held[node].mass;
+            const double inverse = momentum[node].mass > 0 ? 1 / momentum[node].mass : 0;
+            velocity[node] = velocity_of(momentum[node].x, momentum[node].y, inverse);
+            bound.add(momentum[node].mass, velocity[node]);
+        });
+        if (!rubs) mirror_upright(part);
     });
     start_speed = bound_of_speed();  // walls make no node faster
-    slide(false);
-    mirror();
+    if (rubs) {
+        slide(false);
+        for (size_t part = 0; part < parts(); ++part) mirror_upright(part);
+    }
+    mirror_level();
 }
 
 void GridMotion::end_step(double dt) {
-    for_each_mirror(
-        [this](NodePair nodes, const Mirror& sign) { add_mirrored(force[nodes.inside], sign, force[nodes.beyond]); });
     const bool rubs = rubs_along_walls();
-    for_each_part([&](size_t node, SpeedBound& bound) {
-        const double response = momentum[node].mass > 0 ? dt / momentum[node].mass : 0;
-        if (!held.empty()) force[node] = {force[node].x + held[node].x, force[node].y + held[node].y};
-        velocity[node].x += response * force[node].x;
-        velocity[node].y += response * force[node].y;
-        if (!rubs) finish(node, bound);
+    const auto come_inside = [this](NodePair nodes, const Mirror& sign, const Mirror&) {
+        add_mirrored(force[nodes.inside], sign, force[nodes.beyond]);
+    };
+    for_each_level_mirror(come_inside);
+    for_each_part([&](size_t part, SpeedBound& bound) {
+        for_each_upright_mirror_of(part, come_inside);
+        for_each_node_of(part, [&](size_t node) {
+            const double response = momentum[node].mass > 0 ? dt / momentum[node].mass : 0;
+            if (!held.empty()) force[node] = {force[node].x + held[node].x, force[node].y + held[node].y};
+            velocity[node].x += response * force[node].x;
+            velocity[node].y += response * force[node].y;
+            if (!rubs) finish(node, bound);
+        });
+        if (!rubs) mirror_upright(part);
     });
     if (rubs) {  // by the nodes' masses
         slide(true);
-        for_each_part([this](size_t node, SpeedBound& bound) { finish(node, bound); });
+        for_each_part([this](size_t part, SpeedBound& bound) {
+            for_each_node_of(part, [&](size_t node) { finish(node, bound); });
+        });
+        for (size_t part = 0; part < parts(); ++part) mirror_upright(part);
     }
-    mirror();
+    mirror_level();
     speed = bound_of_speed();
 }
 

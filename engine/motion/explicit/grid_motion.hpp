@@ -127,7 +127,9 @@ private:
     template <class Use>
     void for_each_part(const Use& use);
     void finish(size_t node, SpeedBound& bound);
-    void mirror();
+    void mirror(NodePair nodes, const Mirror& sign);
+    void mirror_upright(size_t part);
+    void mirror_level();
     void slide(bool with_friction);
     void meet(const Corner& corner, bool with_friction);
     void meet(const Wall& wall, size_t axis, double outwards, NodePair nodes, bool with_friction);

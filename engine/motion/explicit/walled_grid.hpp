@@ -22,6 +22,9 @@ struct Wall {
     WallKind kind = WallKind::none;
     double place = 0;     ///< x of a left or right wall, y of the base or the top, m
     double friction = 0;  ///< tangent of the friction angle
+
+    /// Whether the ground never leaves it.
+    [[nodiscard]] bool mirrors() const { return kind == WallKind::roller || kind == WallKind::fixed; }
 };
 
 struct Walls {
@@ -92,6 +95,12 @@ struct WalledGrid {
     /// use(nodes) for the pairs along a wall; `inwards` is the direction of the axis in which the ground lies, 1 or -1.
     template <class Use>
     void for_each_pair(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const;
+    template <class Use>
+    void for_each_level_pair(const Wall& wall, int32_t inwards, const Use& use) const;
+    /// The two nodes of a pair along an upright wall are in one row.
+    template <class Use>
+    void for_each_upright_pair(const Wall& wall, int32_t inwards, size_t first_row, size_t last_row,
+                               const Use& use) const;
 
     /// use(wall, axis, inwards)
     template <class Use>
@@ -101,9 +110,15 @@ struct WalledGrid {
     template <class Use>
     void for_each_corner(const Use& use) const;
 
-    /// use(nodes, mirror) for every pair that a roller or a fixed wall mirrors, wall after wall: in a corner, sums go from node to node.
+    /// use(nodes, mirror, even) for every pair that a level roller or fixed wall mirrors; `even` is what water and scalars see, to which every wall
+    /// is a roller. What comes inside by these goes on by those along upright walls, part by part, and what is mirrored comes the other way: so it
+    /// goes from node to node in a corner, and threads leave each other's rows alone.
     template <class Use>
-    void for_each_mirror(const Use& use) const;
+    void for_each_level_mirror(const Use& use) const;
+    template <class Use>
+    void for_each_upright_mirror_of(size_t part, const Use& use) const;
+    template <class Use>
+    void for_each_upright_mirror(const Use& use) const;
 };
 
 template <class Use>
@@ -122,27 +137,40 @@ void WalledGrid::for_each_node(const Use& use) const {
     for (size_t part = 0; part < parts(); ++part) for_each_node_of(part, use);
 }
 
+/// g++ 12 was seen to clear the nodes beyond a wall, all at once, before they were read. One pair after the other:
+template <class Use>
+void use_in_turn(const Use& use, NodePair nodes) {
+    use(nodes);
+    std::atomic_signal_fence(std::memory_order_seq_cst);
+}
+
 template <class Use>
 void WalledGrid::for_each_pair(const Wall& wall, size_t axis, int32_t inwards, const Use& use) const {
-    const auto stride = static_cast<size_t>(grid.cells[0]);
-    const int32_t line = line_at(wall, axis, inwards);
+    if (axis == 1) return for_each_level_pair(wall, inwards, use);
+    for_each_upright_pair(wall, inwards, 0, spans.size(), use);
+}
+
+template <class Use>
+void WalledGrid::for_each_level_pair(const Wall& wall, int32_t inwards, const Use& use) const {
+    const int32_t line = line_at(wall, 1, inwards);
     if (line < 0) return;
-    // g++ 12 was seen to clear the nodes beyond a wall, all at once, before they were read. One pair after the other:
-    const auto use_in_turn = [&](NodePair nodes) {
-        use(nodes);
-        std::atomic_signal_fence(std::memory_order_seq_cst);
-    };
-    const auto inside = static_cast<size_t>(line);
-    if (axis == 1) {
-        for (auto column = static_cast<size_t>(spans[inside].first); column < static_cast<size_t>(spans[inside].last);
-             ++column)
-            use_in_turn({inside * stride + column, (inwards > 0 ? inside - 1 : inside + 1) * stride + column});
-        return;
-    }
-    for (size_t row = 0; row < spans.size(); ++row) {
+    const auto inside = static_cast<size_t>(line), beyond = static_cast<size_t>(line - inwards),
+               stride = static_cast<size_t>(grid.cells[0]);
+    const auto last = static_cast<size_t>(spans[inside].last);
+    for (auto column = static_cast<size_t>(spans[inside].first); column < last; ++column)
+        use_in_turn(use, {inside * stride + column, beyond * stride + column});
+}
+
+template <class Use>
+void WalledGrid::for_each_upright_pair(const Wall& wall, int32_t inwards, size_t first_row, size_t last_row,
+                                       const Use& use) const {
+    const int32_t line = line_at(wall, 0, inwards);
+    if (line < 0) return;
+    const auto inside = static_cast<size_t>(line), beyond = static_cast<size_t>(line - inwards),
+               stride = static_cast<size_t>(grid.cells[0]);
+    for (size_t row = first_row; row < last_row; ++row) {
         if (line < spans[row].first || line >= spans[row].last) continue;
-        const size_t node = row * stride + inside;
-        use_in_turn({node, inwards > 0 ? node - 1 : node + 1});
+        use_in_turn(use, {row * stride + inside, row * stride + beyond});
     }
 }
 
@@ -181,12 +209,31 @@ void WalledGrid::for_each_corner(const Use& use) const {
 }
 
 template <class Use>
-void WalledGrid::for_each_mirror(const Use& use) const {
-    for_each_wall([&](const Wall& wall, size_t axis, int32_t inwards) {
-        if (wall.kind != WallKind::roller && wall.kind != WallKind::fixed) return;
-        const Mirror mirror = mirror_of(wall, axis);
-        for_each_pair(wall, axis, inwards, [&](NodePair nodes) { use(nodes, mirror); });
-    });
+void WalledGrid::for_each_level_mirror(const Use& use) const {
+    const auto use_along = [&](const Wall& wall, int32_t inwards) {
+        if (!wall.mirrors()) return;
+        const Mirror mirror = mirror_of(wall, 1), even = even_mirror(1);
+        for_each_level_pair(wall, inwards, [&](NodePair nodes) { use(nodes, mirror, even); });
+    };
+    use_along(walls.base, 1);
+    use_along(walls.top, -1);
+}
+
+template <class Use>
+void WalledGrid::for_each_upright_mirror_of(size_t part, const Use& use) const {
+    const size_t first_row = part * rows_a_part, last_row = std::min(first_row + rows_a_part, spans.size());
+    const auto use_along = [&](const Wall& wall, int32_t inwards) {
+        if (!wall.mirrors()) return;
+        const Mirror mirror = mirror_of(wall, 0), even = even_mirror(0);
+        for_each_upright_pair(wall, inwards, first_row, last_row, [&](NodePair nodes) { use(nodes, mirror, even); });
+    };
+    use_along(walls.left, 1);
+    use_along(walls.right, -1);
+}
+
+template <class Use>
+void WalledGrid::for_each_upright_mirror(const Use& use) const {
+    for (size_t part = 0; part < parts(); ++part) for_each_upright_mirror_of(part, use);
 }
 
 }  // namespace talus
