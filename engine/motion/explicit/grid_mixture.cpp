@@ -69,46 +69,47 @@ void GridMixture<has_gas, exchanges>::start(size_t node, PartSums& part) {
         if (!loses && gas.weight[node] > 0) rates[node].gas.x = gain / gas.weight[node];
         if (!loses && !(gas.weight[node] > 0)) part.escaped += flow_time * gain;
     }
+    if constexpr (exchanges) find_solute_rates(node, part);
 }
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::begin_step() {
     fold_momenta();
-    if constexpr (exchanges) fold_solutes();
-    part_sums_.assign(parts(), PartSums{SpeedBound(least_mass)});
-    threads.for_each(parts(), [this](size_t number) {
-        PartSums part{SpeedBound(least_mass)};
+    start_speed = for_each_part([this](size_t number, PartSums& part) {
+        fold_momenta_of(number);
         for_each_node_of(number, [&](size_t i) { start(i, part); });
-        part_sums_[number] = part;
+        mirror_part(number);
     });
-    SpeedBound bound(least_mass);
-    for (const PartSums& part : part_sums_) {
-        bound.add(part.bound);
-        seepage += part.seepage;
-        gas.escaped += part.escaped;
-    }
-    start_speed = bound.value();
-    if constexpr (exchanges) find_solute_rates();
     mirror();
 }
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::end_step(double dt) {
     fold_forces(dt);
-    solve_inner_nodes(dt);
+    part_edges_.resize(parts());
+    const double inner_speed = for_each_part([this, dt](size_t number, PartSums& part) {
+        fold_forces_of(number);
+        solve_inner_nodes(number, dt, part);
+    });
     find_surface();
-    SpeedBound bound(least_mass);
-    for (const PartSums& part : part_sums_) bound.add(part.bound);
-    for (const auto [node, up] : edge_) {
-        solve(node, dt);
-        bound.add(momentum[node].mass, velocity[node]);
-        if constexpr (!exchanges) clear_sums(node);
-    }
-    speed = bound.value();
+    const double edge_speed = for_each_part([this, dt](size_t number, PartSums& part) {
+        for (const auto [node, up] : part_edges_[number]) {
+            solve(node, dt, part);
+            part.bound.add(momentum[node].mass, velocity[node]);
+            if constexpr (!exchanges) clear_sums(node);
+        }
+        if constexpr (!exchanges) mirror_part(number);
+    });
+    speed = std::max(inner_speed, edge_speed);
     if (!immersed) cross_surface(dt);
     if constexpr (exchanges) {
-        carry_solutes(dt);
-        for_each_node([this](size_t i) { clear_sums(i); });
+        for_each_part([this, dt](size_t number, PartSums& part) {
+            for_each_node_of(number, [&](size_t i) {
+                carry_solutes(i, dt, part);
+                clear_sums(i);
+            });
+            mirror_part(number);
+        });
     }
     mirror();
     flow_time = dt;
@@ -147,24 +148,19 @@ double GridMixture<has_gas, exchanges>::total(const std::vector<double>& values)
     return sum;
 }
 
-/// Those at the edge are left: few, and they share the surface.
+/// Those at the edge are left: they share the surface.
 template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::solve_inner_nodes(double dt) {
-    part_edges_.resize(parts());
-    threads.for_each(parts(), [this, dt](size_t part) {
-        SpeedBound bound(least_mass);
-        std::vector<EdgeNode>& edge = part_edges_[part];
-        edge.clear();
-        for_each_node_of(part, [&](size_t i) {
-            if (is_at_edge(i)) {
-                edge.push_back({i, facing_up(i)});
-                return;
-            }
-            solve(i, dt);
-            bound.add(momentum[i].mass, velocity[i]);
-            if constexpr (!exchanges) clear_sums(i);
-        });
-        part_sums_[part].bound = bound;
+void GridMixture<has_gas, exchanges>::solve_inner_nodes(size_t number, double dt, PartSums& part) {
+    std::vector<EdgeNode>& edge = part_edges_[number];
+    edge.clear();
+    for_each_node_of(number, [&](size_t i) {
+        if (is_at_edge(i)) {
+            edge.push_back({i, facing_up(i)});
+            return;
+        }
+        solve(i, dt, part);
+        part.bound.add(momentum[i].mass, velocity[i]);
+        if constexpr (!exchanges) clear_sums(i);
     });
 }
 
@@ -252,7 +248,7 @@ void GasAnswer::choke(const NodeVector& relative_velocity, double most) {
 }
 
 template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
+void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& part) {
     const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
     const NodeGradients& sums = gradients[node];
     const Means& mean = means[node];
@@ -337,7 +333,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
     const double edge_head = gravity * liquid_density * (height_of(node) + edge.height);
     if (immersed) {
         flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y}, {}, 1);
-        seepage += dt * dot(through, outwards);
+        part.seepage += dt * dot(through, outwards);
         return;
     }
     const NodeVector pushed = edge.stretched(inner), gas_pushed = edge.stretched(gas_inner);
@@ -353,7 +349,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt) {
         returned[node] - (conductance / mean.volume - evened) * dot(edge.stretched(pushed), outwards);
     const double drawn = edge_conductance * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
-    if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed, flux[node].gas);
+    if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed, flux[node].gas, part);
 }
 
 /// Of what the edge can take, what rain offers; all where water comes out.
@@ -378,7 +374,7 @@ double GridMixture<has_gas, exchanges>::gas_distance(size_t node, const GroundEd
 /// edge changes no psi, whatever the step.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
-                                              const NodeVector& pushed, const NodeVector& through) {
+                                              const NodeVector& pushed, const NodeVector& through, PartSums& part) {
     if (!(answer.density > 0)) return;
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
     const double conductance = dt * answer.moved / volume, driven = conductance / volume - answer.evened;
@@ -392,7 +388,7 @@ void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const Grou
     const double drawn = content * (opening * (edge_push - answer.push) - carried);
     const double inflow = (drawn - filling * gas.returned[node]) / (1 + filling);
     gas.returned[node] += inflow;
-    gas.escaped -= dt * inflow;
+    part.escaped -= dt * inflow;
 }
 
 template struct GridMixture<false>;

@@ -198,11 +198,20 @@ private:
     /// What a part of the grid adds to the whole's.
     struct PartSums {
         SpeedBound bound;
-        double seepage = 0, escaped = 0;  // kg
+        double seepage = 0, escaped = 0, evaporated = 0;  // kg
     };
+    template <class Use>
+    double for_each_part(const Use& use);
+    void add_to_totals(const PartSums& part) {
+        seepage += part.seepage;
+        gas.escaped += part.escaped;
+        solutes.evaporated += part.evaporated;
+    }
     [[nodiscard]] bool is_at_edge(size_t node) const;
     template <class Use>
     void for_each_meeting(const Use& use) const;
+    template <class Use>
+    void for_each_meeting_of(size_t part, const Use& use) const;
     [[nodiscard]] std::ptrdiff_t to_inner(size_t node, size_t axis) const;
     template <class Use>
     void for_each_wall_pair(const Use& use) const;
@@ -214,31 +223,37 @@ private:
     void join_contacts(NodePair nodes);
     void rub(size_t node, double dt, const ImpulseAnswer& answer);
     void fold_momenta(NodePair nodes, const Mirror& mirror, const Mirror& even);
+    void meet_contacts();
     void fold_momenta();
+    void fold_momenta_of(size_t part);
     void find_velocities(size_t node);
     void start(size_t node, PartSums& part);
     void fold_forces(NodePair nodes, const Mirror& mirror, const Mirror& even);
     void fold_forces(double dt);
+    void fold_forces_of(size_t part);
     void clear_sums(size_t node);
     [[nodiscard]] double facing_up(size_t node) const { return std::max(gradients[node].edge_y, 0.0); }  // at the edge
-    void solve_inner_nodes(double dt);
+    void solve_inner_nodes(size_t number, double dt, PartSums& part);
     void find_surface();
     [[nodiscard]] double falls_on(size_t node, double up) const;
     void cross_surface(double dt);
     [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
-    void solve(size_t node, double dt);
+    void solve(size_t node, double dt, PartSums& part);
     [[nodiscard]] double wetted_share(size_t node) const;
     [[nodiscard]] double gas_distance(size_t node, const GroundEdge& edge) const;
     void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed,
-                 const NodeVector& through);
+                 const NodeVector& through, PartSums& part);
+    void mirror(NodePair nodes, const Mirror& mirror, const Mirror& even);
     void mirror();
-    void fold_solutes();
-    void fold_solute_means();
-    void find_solute_rates();
-    void carry_solutes(double dt);
-    void carry_dissolved(size_t node, const GroundEdge& edge, double dt);
-    void carry_vapour(size_t node, const GroundEdge& edge, double dt);
-    void mirror_solutes();
+    void mirror_part(size_t part);
+    void lose(const SoluteReturn& rate, PartSums& part) const;
+    void fold_solutes(NodePair nodes);
+    void fold_solute_means(NodePair nodes, const Mirror& even);
+    void find_solute_rates(size_t node, PartSums& part);
+    void carry_solutes(size_t node, double dt, PartSums& part);
+    void carry_dissolved(size_t node, const GroundEdge& edge, double dt, PartSums& part);
+    void carry_vapour(size_t node, const GroundEdge& edge, double dt, PartSums& part);
+    void mirror_solutes(NodePair nodes, const Mirror& even);
 
     std::vector<PartSums> part_sums_;                // one a part
     std::vector<std::vector<EdgeNode>> part_edges_;  // likewise
@@ -268,15 +283,41 @@ void GridMixture<has_gas, exchanges>::for_each_wall_pair(const Use& use) const {
     });
 }
 
-/// use(nodes, mirror, even) for every pair along a roller or a fixed wall, and where the ground is on a wall with friction. `even` is what water and
-/// scalars see, to which every wall is a roller.
+/// use(nodes, mirror, even) for every pair that meets, but for those that for_each_meeting_of() has. `even` is what water and scalars see, to which every
+/// wall is a roller. Where a wall rubs, pairs may meet in any order of the walls: all of them here.
 template <bool has_gas, bool exchanges>
 template <class Use>
 void GridMixture<has_gas, exchanges>::for_each_meeting(const Use& use) const {
+    if (!rubs_) return for_each_level_mirror(use);
     for_each_wall_pair([&](const Wall& wall, size_t axis, int32_t, NodePair nodes) {
         if (wall.kind != WallKind::friction || contact_beyond_[axis][nodes.beyond] >= 0)
             use(nodes, mirror_of(wall, axis), even_mirror(axis));
     });
+}
+
+/// The same for the pairs within the rows of a part of the grid.
+template <bool has_gas, bool exchanges>
+template <class Use>
+void GridMixture<has_gas, exchanges>::for_each_meeting_of(size_t part, const Use& use) const {
+    if (!rubs_) for_each_upright_mirror_of(part, use);
+}
+
+/// use(part, its sums), for the parts of the grid at the same time. The bound of their speeds, m/s.
+template <bool has_gas, bool exchanges>
+template <class Use>
+double GridMixture<has_gas, exchanges>::for_each_part(const Use& use) {
+    part_sums_.assign(parts(), PartSums{SpeedBound(least_mass)});
+    threads.for_each(parts(), [&](size_t number) {
+        PartSums part{SpeedBound(least_mass)};
+        use(number, part);
+        part_sums_[number] = part;
+    });
+    SpeedBound bound(least_mass);
+    for (const PartSums& part : part_sums_) {
+        bound.add(part.bound);
+        add_to_totals(part);
+    }
+    return bound.value();
 }
 
 // grid_solutes.cpp
@@ -285,18 +326,20 @@ SoluteReturn GridMixture<true, true>::returned_solutes() const;
 template <>
 void GridMixture<true, true>::lose(const SoluteReturn& rate);
 template <>
-void GridMixture<true, true>::fold_solutes();
+void GridMixture<true, true>::lose(const SoluteReturn& rate, PartSums& part) const;
 template <>
-void GridMixture<true, true>::fold_solute_means();
+void GridMixture<true, true>::fold_solutes(NodePair nodes);
 template <>
-void GridMixture<true, true>::find_solute_rates();
+void GridMixture<true, true>::fold_solute_means(NodePair nodes, const Mirror& even);
 template <>
-void GridMixture<true, true>::carry_solutes(double dt);
+void GridMixture<true, true>::find_solute_rates(size_t node, PartSums& part);
 template <>
-void GridMixture<true, true>::carry_dissolved(size_t node, const GroundEdge& edge, double dt);
+void GridMixture<true, true>::carry_solutes(size_t node, double dt, PartSums& part);
 template <>
-void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, double dt);
+void GridMixture<true, true>::carry_dissolved(size_t node, const GroundEdge& edge, double dt, PartSums& part);
 template <>
-void GridMixture<true, true>::mirror_solutes();
+void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, double dt, PartSums& part);
+template <>
+void GridMixture<true, true>::mirror_solutes(NodePair nodes, const Mirror& even);
 
 }  // namespace talus

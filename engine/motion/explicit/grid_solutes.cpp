@@ -59,74 +59,74 @@ SoluteReturn GridMixture<true, true>::returned_solutes() const {
 }
 
 template <>
+void GridMixture<true, true>::lose(const SoluteReturn& rate, PartSums& part) const {
+    part.seepage -= flow_time * rate.dissolved;
+    part.escaped += flow_time * (rate.dissolved - rate.vapour);
+    part.evaporated += flow_time * rate.vapour;
+}
+
+template <>
 void GridMixture<true, true>::lose(const SoluteReturn& rate) {
-    seepage -= flow_time * rate.dissolved;
-    gas.escaped += flow_time * (rate.dissolved - rate.vapour);
-    solutes.evaporated += flow_time * rate.vapour;
+    PartSums lost{SpeedBound(least_mass)};
+    lose(rate, lost);
+    add_to_totals(lost);
 }
 
 template <>
-void GridMixture<true, true>::fold_solutes() {
-    for_each_meeting([this](NodePair nodes, const Mirror&, const Mirror&) {
-        SoluteGains &inside = solutes.gains[nodes.inside], &beyond = solutes.gains[nodes.beyond];
-        inside.dissolved += beyond.dissolved;
-        inside.dissolved_gain += beyond.dissolved_gain;
-        inside.vapour += beyond.vapour;
-        inside.vapour_gain += beyond.vapour_gain;
-        beyond = {};
-        SoluteReturn &back = solutes.returned[nodes.inside], &back_beyond = solutes.returned[nodes.beyond];
-        back.dissolved += back_beyond.dissolved;
-        back.vapour += back_beyond.vapour;
-        back_beyond = {};
-    });
+void GridMixture<true, true>::fold_solutes(NodePair nodes) {
+    SoluteGains &inside = solutes.gains[nodes.inside], &beyond = solutes.gains[nodes.beyond];
+    inside.dissolved += beyond.dissolved;
+    inside.dissolved_gain += beyond.dissolved_gain;
+    inside.vapour += beyond.vapour;
+    inside.vapour_gain += beyond.vapour_gain;
+    beyond = {};
+    SoluteReturn &back = solutes.returned[nodes.inside], &back_beyond = solutes.returned[nodes.beyond];
+    back.dissolved += back_beyond.dissolved;
+    back.vapour += back_beyond.vapour;
+    back_beyond = {};
 }
 
 template <>
-void GridMixture<true, true>::fold_solute_means() {
-    for_each_meeting([this](NodePair nodes, const Mirror&, const Mirror& mirror) {
-        SoluteGradients &inside = solutes.gradients[nodes.inside], &beyond = solutes.gradients[nodes.beyond];
-        add_mirrored(inside.dissolved, mirror, beyond.dissolved);
-        add_mirrored(inside.vapour, mirror, beyond.vapour);
-        beyond = {};
-        SoluteMeans &mean = solutes.means[nodes.inside], &mean_beyond = solutes.means[nodes.beyond];
-        mean.dissolved += mean_beyond.dissolved;
-        mean.dissolved_spread += mean_beyond.dissolved_spread;
-        mean.vapour += mean_beyond.vapour;
-        mean.vapour_spread += mean_beyond.vapour_spread;
-        mean_beyond = {};
-    });
+void GridMixture<true, true>::fold_solute_means(NodePair nodes, const Mirror& even) {
+    SoluteGradients &inside = solutes.gradients[nodes.inside], &beyond = solutes.gradients[nodes.beyond];
+    add_mirrored(inside.dissolved, even, beyond.dissolved);
+    add_mirrored(inside.vapour, even, beyond.vapour);
+    beyond = {};
+    SoluteMeans &mean = solutes.means[nodes.inside], &mean_beyond = solutes.means[nodes.beyond];
+    mean.dissolved += mean_beyond.dissolved;
+    mean.dissolved_spread += mean_beyond.dissolved_spread;
+    mean.vapour += mean_beyond.vapour;
+    mean.vapour_spread += mean_beyond.vapour_spread;
+    mean_beyond = {};
 }
 
 /// What came to a node that all points have left is out of the ground: its water as seepage and vapour, its air with the gas.
 template <>
-void GridMixture<true, true>::find_solute_rates() {
-    for_each_node([this](size_t i) {
-        const SoluteGains& own = solutes.gains[i];
-        const SoluteReturn& returned = solutes.returned[i];
-        const double mass = momentum[i].mass;
-        solutes.rates[i] = {shared(own.dissolved_gain + returned.dissolved, own.dissolved, mass),
-                            shared(own.vapour_gain + returned.vapour, own.vapour, gas.weight[i])};
-        if (!(mass > 0)) lose(returned);
-    });
+void GridMixture<true, true>::find_solute_rates(size_t node, PartSums& part) {
+    const SoluteGains& own = solutes.gains[node];
+    const SoluteReturn& back = solutes.returned[node];
+    const double mass = momentum[node].mass;
+    solutes.rates[node] = {shared(own.dissolved_gain + back.dissolved, own.dissolved, mass),
+                           shared(own.vapour_gain + back.vapour, own.vapour, gas.weight[node])};
+    if (!(mass > 0)) lose(back, part);
 }
 
 template <>
-void GridMixture<true, true>::carry_solutes(double dt) {
-    for_each_node([this, dt](size_t i) {
-        solutes.fluxes[i] = solutes.evenings[i] = solutes.mixings[i] = {};
-        solutes.returned[i] = {};
-        if (!(momentum[i].mass > 0) || !(means[i].volume > 0)) return;
-        const bool is_open = is_at_edge(i) && !immersed;
-        const NodeVector outwards{gradients[i].edge_x, gradients[i].edge_y};
-        const GroundEdge edge(is_open ? outwards : NodeVector{}, means[i].volume / cell_volume(), grid.cell_size);
-        carry_dissolved(i, edge, dt);
-        carry_vapour(i, edge, dt);
-    });
+void GridMixture<true, true>::carry_solutes(size_t node, double dt, PartSums& part) {
+    solutes.fluxes[node] = solutes.evenings[node] = solutes.mixings[node] = {};
+    solutes.returned[node] = {};
+    const double volume = means[node].volume;
+    if (!(momentum[node].mass > 0) || !(volume > 0)) return;
+    const bool is_open = is_at_edge(node) && !immersed;
+    const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
+    const GroundEdge edge(is_open ? outwards : NodeVector{}, volume / cell_volume(), grid.cell_size);
+    carry_dissolved(node, edge, dt, part);
+    carry_vapour(node, edge, dt, part);
 }
 
 /// At the surface water is in equilibrium with the atmosphere's air, whether it goes in or comes out.
 template <>
-void GridMixture<true, true>::carry_dissolved(size_t node, const GroundEdge& edge, double dt) {
+void GridMixture<true, true>::carry_dissolved(size_t node, const GroundEdge& edge, double dt, PartSums& part) {
     const SoluteMeans& mean = solutes.means[node];
     const double mass = momentum[node].mass, fraction = mean.dissolved / mass;
     const Carrier liquid{flux[node].liquid, {gradients[node].edge_x, gradients[node].edge_y}, means[node].volume, mass};
@@ -138,12 +138,12 @@ void GridMixture<true, true>::carry_dissolved(size_t node, const GroundEdge& edg
     const double crossing = solutes.outer_air * (returned[node] - dot(liquid.flux, liquid.outwards));
     solutes.returned[node].dissolved = dot(air.flux, liquid.outwards) + crossing;
     returned[node] += crossing;
-    gas.escaped -= dt * crossing;
+    part.escaped -= dt * crossing;
 }
 
 /// Gas that comes in is as moist as the atmosphere. Through the edge vapour diffuses as far as rain leaves it dry, against air.
 template <>
-void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, double dt) {
+void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, double dt, PartSums& part) {
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
     if (!(content > least_gas_share)) return;
     const SoluteMeans& mean = solutes.means[node];
@@ -161,17 +161,15 @@ void GridMixture<true, true>::carry_vapour(size_t node, const GroundEdge& edge, 
         inflow += (1 - wetted_share(node)) * content * diffusion * edge.length * drier / gas_distance(node, edge);
     }
     solutes.returned[node].vapour = dot(vapour.flux, fluid.outwards) + inflow;
-    solutes.evaporated -= dt * inflow;
-    gas.escaped += dt * inflow;
+    part.evaporated -= dt * inflow;
+    part.escaped += dt * inflow;
 }
 
 template <>
-void GridMixture<true, true>::mirror_solutes() {
-    for_each_meeting([this](NodePair nodes, const Mirror&, const Mirror& mirror) {
-        solutes.fluxes[nodes.beyond] = mirrored(solutes.fluxes[nodes.inside], mirror);
-        for (auto* field : {&solutes.evenings, &solutes.mixings, &solutes.rates})
-            (*field)[nodes.beyond] = (*field)[nodes.inside];
-    });
+void GridMixture<true, true>::mirror_solutes(NodePair nodes, const Mirror& even) {
+    solutes.fluxes[nodes.beyond] = mirrored(solutes.fluxes[nodes.inside], even);
+    for (auto* field : {&solutes.evenings, &solutes.mixings, &solutes.rates})
+        (*field)[nodes.beyond] = (*field)[nodes.inside];
 }
 
 }  // namespace talus

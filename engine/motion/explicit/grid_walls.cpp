@@ -127,16 +127,34 @@ void GridMixture<has_gas, exchanges>::fold_momenta(NodePair nodes, const Mirror&
     }
 }
 
+/// Where a wall rubs: pair by pair, as one may bring another into touch.
 template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::fold_momenta() {
-    rubs_ = rubs_along_walls();
-    if (rubs_) forget_contacts();
+void GridMixture<has_gas, exchanges>::meet_contacts() {
+    forget_contacts();
     for_each_wall_pair([this](const Wall& wall, size_t axis, int32_t inwards, NodePair nodes) {
         const bool rubs = wall.kind == WallKind::friction;
         if (rubs && !touch(wall, axis, inwards, nodes, 0)) return;
         const double before = force[nodes.inside].y;
         fold_momenta(nodes, mirror_of(wall, axis), even_mirror(axis));
         if (rubs && axis == 1) contacts_.back().weight = force[nodes.inside].y - before;
+    });
+}
+
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::fold_momenta() {
+    rubs_ = rubs_along_walls();
+    if (rubs_) meet_contacts();
+    for_each_meeting([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
+        if (!rubs_) fold_momenta(nodes, mirror, even);
+        if constexpr (exchanges) fold_solutes(nodes);
+    });
+}
+
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::fold_momenta_of(size_t part) {
+    for_each_meeting_of(part, [this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
+        fold_momenta(nodes, mirror, even);
+        if constexpr (exchanges) fold_solutes(nodes);
     });
 }
 
@@ -179,11 +197,24 @@ void GridMixture<has_gas, exchanges>::fold_forces(NodePair nodes, const Mirror& 
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::fold_forces(double dt) {
-    for_each_wall_pair([&](const Wall& wall, size_t axis, int32_t inwards, NodePair nodes) {
-        if (wall.kind != WallKind::friction || presses(wall, axis, inwards, nodes, dt))
-            fold_forces(nodes, mirror_of(wall, axis), even_mirror(axis));
+    if (rubs_) {
+        for_each_wall_pair([&](const Wall& wall, size_t axis, int32_t inwards, NodePair nodes) {
+            if (wall.kind != WallKind::friction || presses(wall, axis, inwards, nodes, dt))
+                fold_forces(nodes, mirror_of(wall, axis), even_mirror(axis));
+        });
+    }
+    for_each_meeting([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
+        if (!rubs_) fold_forces(nodes, mirror, even);
+        if constexpr (exchanges) fold_solute_means(nodes, even);
     });
-    if constexpr (exchanges) fold_solute_means();
+}
+
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::fold_forces_of(size_t part) {
+    for_each_meeting_of(part, [this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
+        fold_forces(nodes, mirror, even);
+        if constexpr (exchanges) fold_solute_means(nodes, even);
+    });
 }
 
 /// Friction along walls takes at most its coefficient times the impulse that presses the skeleton on them: the whole ground's, less what the pores' fluid
@@ -223,29 +254,47 @@ void GridMixture<has_gas, exchanges>::rub(size_t node, double dt, const ImpulseA
 
 /// Beyond a wall the nodes move as the mirrored ground would; water slides along every wall.
 template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::mirror(NodePair nodes, const Mirror& mirror, const Mirror& even) {
+    const auto [inside, beyond] = nodes;
+    velocity[beyond] = mirrored(velocity[inside], mirror);
+    fluid_velocity[beyond] = mirrored(fluid_velocity[inside], even);
+    flux[beyond] = mirrored(flux[inside], even);
+    rates[beyond] = rates[inside];
+    evening[beyond] = evening[inside];
+    if constexpr (exchanges) mirror_solutes(nodes, even);
+}
+
+template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::mirror() {
-    for_each_meeting([this](NodePair nodes, const Mirror& mirror, const Mirror& even) {
-        const auto [inside, beyond] = nodes;
-        velocity[beyond] = mirrored(velocity[inside], mirror);
-        fluid_velocity[beyond] = mirrored(fluid_velocity[inside], even);
-        flux[beyond] = mirrored(flux[inside], even);
-        rates[beyond] = rates[inside];
-        evening[beyond] = evening[inside];
-    });
-    if constexpr (exchanges) mirror_solutes();
+    for_each_meeting([this](NodePair nodes, const Mirror& sign, const Mirror& even) { mirror(nodes, sign, even); });
+}
+
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::mirror_part(size_t part) {
+    for_each_meeting_of(part,
+                        [this](NodePair nodes, const Mirror& sign, const Mirror& even) { mirror(nodes, sign, even); });
 }
 
 template void GridMixture<false>::fold_momenta();
+template void GridMixture<false>::fold_momenta_of(size_t part);
 template void GridMixture<false>::fold_forces(double dt);
+template void GridMixture<false>::fold_forces_of(size_t part);
 template void GridMixture<false>::rub(size_t node, double dt, const ImpulseAnswer& answer);
 template void GridMixture<false>::mirror();
+template void GridMixture<false>::mirror_part(size_t part);
 template void GridMixture<true>::fold_momenta();
+template void GridMixture<true>::fold_momenta_of(size_t part);
 template void GridMixture<true>::fold_forces(double dt);
+template void GridMixture<true>::fold_forces_of(size_t part);
 template void GridMixture<true>::rub(size_t node, double dt, const ImpulseAnswer& answer);
 template void GridMixture<true>::mirror();
+template void GridMixture<true>::mirror_part(size_t part);
 template void GridMixture<true, true>::fold_momenta();
+template void GridMixture<true, true>::fold_momenta_of(size_t part);
 template void GridMixture<true, true>::fold_forces(double dt);
+template void GridMixture<true, true>::fold_forces_of(size_t part);
 template void GridMixture<true, true>::rub(size_t node, double dt, const ImpulseAnswer& answer);
 template void GridMixture<true, true>::mirror();
+template void GridMixture<true, true>::mirror_part(size_t part);
 
 }  // namespace talus
