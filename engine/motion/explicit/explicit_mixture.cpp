@@ -457,6 +457,10 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
                    gift);
         scatter_gradients(nodes_.grid, count, spline, gift, &nodes_.gradients.data()->push_x);
         scatter_means(nodes_.grid, count, spline, gift, &nodes_.means.data()->push);
+        if constexpr (filling == Filling::unsaturated) {
+            scatter_moments(nodes_.grid, count, spline, volume, mass, &nodes_.moments.data()->xx,
+                            &nodes_.places.data()->x);
+        }
         if constexpr (exchanges) push_solutes(first, count, spline, fluids);
         if constexpr (has_gas) {
             push_gas(first, count, spline, fluids);
@@ -593,6 +597,7 @@ void ExplicitMixture<filling>::arrange_points() {
         nodes_.resize();
     }
     nodes_.spans = arrangement_.spans();
+    std::fill(nodes_.surroundings.begin(), nodes_.surroundings.end(), NodeSurroundings{});
     nodes_.seepage += nodes_.flow_time * (returned - nodes_.total(nodes_.returned));
     if constexpr (has_gas) nodes_.gas.escaped += nodes_.flow_time * (gas_returned - nodes_.total(nodes_.gas.returned));
     if constexpr (exchanges) {

@@ -43,6 +43,29 @@ inline void scatter_gradients(const Grid& grid, size_t count, const SplineBlock&
     }
 }
 
+/// What tells nodes how a linear field presses on them: `moments` four numbers a node, `places` two.
+inline void scatter_moments(const Grid& grid, size_t count, const SplineBlock& spline, const double* volume,
+                            const double* mass, double* moments, double* places) {
+    NodePatch<Quad, true> moment(moments, grid, spline.first[0]);
+    NodePatch<Pair, true> place(places, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        moment.move_to(spline.first[k]);
+        place.move_to(spline.first[k]);
+        for (size_t j = 0; j < 3; ++j) {
+            const double y = (spline.offset_y[k] + 1 - static_cast<double>(j)) * grid.cell_size;
+            const double value_y = spline.value_y[j][k], slope_y = spline.slope_y[j][k];
+            const Quad row = volume[k] * Quad(value_y, y * slope_y, y * value_y, slope_y);
+            const Pair mass_row = mass[k] * Pair(value_y, y * value_y);
+            for (size_t i = 0; i < 3; ++i) {
+                const double x = (spline.offset_x[k] + 1 - static_cast<double>(i)) * grid.cell_size;
+                const double value_x = spline.value_x[i][k], slope_x = spline.slope_x[i][k];
+                moment.node[j][i] += row * Quad(x * slope_x, value_x, slope_x, x * value_x);
+                place.node[j][i] += mass_row * Pair(x * value_x, value_x);
+            }
+        }
+    }
+}
+
 /// `means`: four numbers a node.
 inline void scatter_means(const Grid& grid, size_t count, const SplineBlock& spline, const FluidGiftBlock& gift,
                           double* means) {

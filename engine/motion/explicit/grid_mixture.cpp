@@ -6,7 +6,9 @@
 namespace talus {
 namespace {
 
-constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is at the ground's edge
+constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is at the ground's edge,
+constexpr double cut_share =
+    0.85;  // and with a neighbour that has less than this: an edge half a cell and more above a node leaves it 5/6
 
 /// Gas is never thinner than this share of the atmosphere where a density is divided by.
 constexpr double least_density_share = 1e-6;
@@ -29,6 +31,11 @@ void GridMixture<has_gas, exchanges>::resize() {
     force.assign(nodes, {});
     gradients.assign(nodes, {});
     means.assign(nodes, {});
+    if (evens && !has_gas) {
+        moments.assign(nodes, {});
+        places.assign(nodes, {});
+        surroundings.assign(nodes, {});
+    }
     returned.resize(nodes);
     capacity.resize(nodes);
     velocity.resize(nodes);
@@ -86,9 +93,10 @@ void GridMixture<has_gas, exchanges>::begin_step() {
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::end_step(double dt) {
     fold_forces(dt);
+    if (!surroundings.empty()) find_surroundings();
     part_edges_.resize(parts());
     const double inner_speed = for_each_part([this, dt](size_t number, PartSums& part) {
-        fold_forces_of(number);
+        if (surroundings.empty()) fold_forces_of(number);
         solve_inner_nodes(number, dt, part);
     });
     find_surface();
@@ -123,6 +131,10 @@ void GridMixture<has_gas, exchanges>::clear_sums(size_t node) {
     force[node] = {};
     gradients[node] = {};
     means[node] = {};
+    if (!moments.empty()) {
+        moments[node] = {};
+        places[node] = {};
+    }
     if constexpr (has_gas) {
         gas.momentum[node] = {};
         gas.weight[node] = 0;
@@ -138,7 +150,33 @@ void GridMixture<has_gas, exchanges>::clear_sums(size_t node) {
 
 template <bool has_gas, bool exchanges>
 bool GridMixture<has_gas, exchanges>::is_at_edge(size_t node) const {
-    return means[node].volume > 0 && means[node].volume < full_share * cell_volume();
+    const double share = means[node].volume / cell_volume();
+    if (!(share > 0) || share < full_share) return share > 0;
+    if (surroundings.empty()) return false;
+    const auto stride = static_cast<size_t>(grid.cells[0]);
+    const auto is_cut = [this](size_t neighbour) { return surroundings[neighbour].share < cut_share; };
+    return is_cut(node - 1) || is_cut(node + 1) || is_cut(node - stride) || is_cut(node + stride);
+}
+
+/// In a pass of its own: in the next one nodes look at their neighbours'.
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::find_surroundings() {
+    if constexpr (has_gas) return;
+    const auto mirror = [this](NodePair nodes, const Mirror&, const Mirror&) {
+        surroundings[nodes.beyond] = surroundings[nodes.inside];
+    };
+    for_each_part([&](size_t number, PartSums&) {
+        fold_forces_of(number);
+        for_each_node_of(number, [&](size_t i) {
+            const double mass = momentum[i].mass;
+            surroundings[i] = {};
+            if constexpr (!has_gas) {
+                if (mass > 0) surroundings[i] = {means[i].permeability / mass, means[i].volume / cell_volume()};
+            }
+        });
+        for_each_meeting_of(number, mirror);
+    });
+    for_each_meeting(mirror);
 }
 
 template <bool has_gas, bool exchanges>
@@ -247,6 +285,17 @@ void GasAnswer::choke(const NodeVector& relative_velocity, double most) {
     evened *= share;
 }
 
+/// The edge of the ground about a node at it.
+template <bool has_gas, bool exchanges>
+GroundEdge GridMixture<has_gas, exchanges>::edge_at(size_t node) const {
+    const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
+    const double volume = means[node].volume, per_mass = 1 / momentum[node].mass;
+    GroundEdge edge(outwards, volume / cell_volume(), grid.cell_size);
+    if (!moments.empty())
+        edge.fit(volume, outwards, {places[node].x * per_mass, places[node].y * per_mass}, moments[node]);
+    return edge;
+}
+
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& part) {
     const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
@@ -262,8 +311,17 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
     const double liquid_content = liquid_mass / (liquid_density * mean.volume);
     const auto drag_of = [&](double lambda) { return dt * liquid_content / (lambda * liquid_density); };
     const double drag = drag_of(mean.lambda(mass));
-    const double conductance = dt * liquid_content / (1 + drag);
-    const double edge_conductance = dt * liquid_content / (1 + drag_of(mean.edge_lambda(mass)));
+    const auto conductance_of = [&](double lambda) { return dt * liquid_content / (1 + drag_of(lambda)); };
+    const double conductance = conductance_of(mean.lambda(mass));
+    const double edge_conductance = conductance_of(mean.edge_lambda(mass));
+    const double unit_weight = gravity * liquid_density;
+    double falls_more = 0;
+    if constexpr (!has_gas) {
+        const size_t above = node + static_cast<size_t>(grid.cells[0]);
+        const double wetter = surroundings.empty() ? 0.0 : surroundings[above].permeability * mass;
+        if (wetter > mean.permeability)
+            falls_more = (conductance_of(wetter / mean.resistance) - conductance) * unit_weight;
+    }
     const double spread = conductance * mean.volume / (cell_volume() * mass);
     liquid_of(evening[node]) = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
@@ -307,6 +365,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
         }
         move(&NodeVector::x, pushed, gas_pushed);
         move(&NodeVector::y, pushed, gas_pushed);
+        if (falls_more > 0) through.y -= falls_more * std::clamp(-pushed.y / (unit_weight * mean.volume), 0.0, 1.0);
         if (!rubs_ || contact_at_[node] < 0) return;
         ImpulseAnswer by_impulse{coupled, drag / (1 + drag), liquid_mass / mean.volume, push};
         if constexpr (has_gas) {
@@ -329,7 +388,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
         if constexpr (has_gas) gas.returned[node] = dot(flux[node].gas, gas_outwards);
         return;
     }
-    const GroundEdge edge(outwards, mean.volume / cell_volume(), grid.cell_size);
+    const GroundEdge edge = edge_at(node);
     const double edge_head = gravity * liquid_density * (height_of(node) + edge.height);
     if (immersed) {
         flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y}, {}, 1);

@@ -113,6 +113,12 @@ struct OpenSurface {
     double room = 0;    ///< in nodes that could take more, kg/s
 };
 
+/// What a node in moist ground tells its neighbours.
+struct NodeSurroundings {
+    double permeability = 0;  ///< mean k_r of the points
+    double share = 0;         ///< of its surroundings that is ground
+};
+
 /// Where the ground is on a wall with friction: two nodes whose sums have come together at the one inside.
 struct Contact {
     const Wall* wall = nullptr;
@@ -175,7 +181,10 @@ struct GridMixture : WalledGrid {
     std::vector<NodeVector> force;  ///< of the total stress, and of the weight what mirrors change, N
     std::vector<NodeGradients> gradients;
     std::vector<Means> means;
-    std::vector<double> returned;  ///< F_j . e_j and what crosses the surface, kg/s
+    std::vector<NodeMoments> moments;            ///< empty where evens is not set or gas moves, as the next two
+    std::vector<NodeVector> places;              ///< sum of N m r, r from the node, kg m
+    std::vector<NodeSurroundings> surroundings;  ///< in the step that ends
+    std::vector<double> returned;                ///< F_j . e_j and what crosses the surface, kg/s
     std::vector<double> capacity;  ///< of the edge at no pressure there to let water in, kg/s; negative: it comes out
     std::vector<double> rain;      ///< onto each column of the grid that holds ground, kg/(m2 s); empty: none
     double flow_time = 0;          ///< s that the rates of water are of: what points have not got yet
@@ -231,6 +240,7 @@ private:
     void fold_forces(NodePair nodes, const Mirror& mirror, const Mirror& even);
     void fold_forces(double dt);
     void fold_forces_of(size_t part);
+    void find_surroundings();
     void clear_sums(size_t node);
     [[nodiscard]] double facing_up(size_t node) const { return std::max(gradients[node].edge_y, 0.0); }  // at the edge
     void solve_inner_nodes(size_t number, double dt, PartSums& part);
@@ -239,6 +249,7 @@ private:
     void cross_surface(double dt);
     [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
     void solve(size_t node, double dt, PartSums& part);
+    [[nodiscard]] GroundEdge edge_at(size_t node) const;
     [[nodiscard]] double wetted_share(size_t node) const;
     [[nodiscard]] double gas_distance(size_t node, const GroundEdge& edge) const;
     void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed,

@@ -17,6 +17,13 @@ void add_mirrored(NodeGradients& inside, const Mirror& mirror, const NodeGradien
     inside.edge_y += mirror.y * beyond.edge_y;
 }
 
+void add_mirrored(NodeMoments& inside, const Mirror& mirror, const NodeMoments& beyond) {
+    inside.xx += beyond.xx;
+    inside.yy += beyond.yy;
+    inside.yx += mirror.x * mirror.y * beyond.yx;
+    inside.xy += mirror.x * mirror.y * beyond.xy;
+}
+
 void add(NodeMeans& inside, const NodeMeans& beyond) {
     inside.push += beyond.push;
     inside.permeability += beyond.permeability;
@@ -184,6 +191,12 @@ void GridMixture<has_gas, exchanges>::fold_forces(NodePair nodes, const Mirror& 
     gradients[beyond] = {};
     add(means[inside], means[beyond]);
     means[beyond] = {};
+    if (!moments.empty()) {
+        add_mirrored(moments[inside], even, moments[beyond]);
+        add_mirrored(places[inside], even, places[beyond]);
+        moments[beyond] = {};
+        places[beyond] = {};
+    }
     if constexpr (has_gas) {  // what is left beyond the wall nobody reads
         add_mirrored(gas.gradients[inside], even, gas.gradients[beyond]);
         GasMeans& gas_in = gas.means[inside];

@@ -47,9 +47,15 @@ inline LevelEdge::LevelEdge(double share) {
     variance = second / share - mean * mean;
 }
 
+/// Sums over points, r being their place from the node: of V x dN/dx, V y dN/dy, V y dN/dx, V x dN/dy, m2.
+struct NodeMoments {
+    double xx = 0, yy = 0, yx = 0, xy = 0;
+};
+
 struct GroundEdge {
     NodeVector normal;    ///< outwards; none where the sum of V grad N is none
     double length = 0;    ///< that sum's, m
+    double above = 0;     ///< of the edge, from the node along the normal, m
     double height = 0;    ///< of the edge above the node, m
     double distance = 0;  ///< from the middle of the ground to the edge, m; 0: no edge
     double more = 0;      ///< what a stretch adds along the normal, per unit
@@ -62,11 +68,24 @@ struct GroundEdge {
         if (!(length > 0)) return;
         const LevelEdge level(share);
         normal = {sum.x / length, sum.y / length};
-        height = level.above * cell_size * normal.y;
+        above = level.above * cell_size;
+        height = above * normal.y;
         distance = share * cell_size * cell_size * (1 - 1 / level.sidedness) / length;
         more = std::sqrt(level.sidedness) - 1;
         reach = (level.above + 1.5) * cell_size;
         spread = level.sidedness * level.variance * cell_size * cell_size;
+    }
+
+    /// Takes from the points themselves what the share tells of ground that is evenly filled: then a linear field drives the very flow that it should,
+    /// however few the points are. `volume`, `sum`: of V N and of V grad N; `middle`: of N m r over that of N m, m.
+    void fit(double volume, const NodeVector& sum, const NodeVector& middle, const NodeMoments& moments) {
+        if (!(length > 0)) return;
+        constexpr double most_sided = 8;  // twice what the tip of a spline is
+        const double xx = moments.xx - middle.x * sum.x, yy = moments.yy - middle.y * sum.y;
+        const double yx = moments.yx - middle.y * sum.x, xy = moments.xy - middle.x * sum.y;
+        const double facing = -(normal.x * normal.x * xx + normal.x * normal.y * (xy + yx) + normal.y * normal.y * yy);
+        more = std::sqrt(std::clamp(volume / std::max(facing, volume / most_sided), 1.0, most_sided)) - 1;
+        distance = std::max(above - (normal.x * middle.x + normal.y * middle.y), 0.5 * distance);
     }
 
     /// From the edge to the middle of what fills a share of the ground that is linear in depth, m. `volume`, `sum`: of its V N and V grad N; `ground`:
