@@ -7,6 +7,7 @@
 #include "motion/explicit/ground_edge.hpp"
 #include "verification/explicit_cases.hpp"
 
+#include <array>
 #include <cmath>
 
 using namespace talus;
@@ -175,7 +176,7 @@ TEST_CASE("wet ground that falls apart loses no water") {
         ExplicitMixture<Filling::unsaturated> column(
             cell_size, walls, gravity, {{elasticity(1e6, 0.3), true, mohr_coulomb({1, 10}, 0, 1e300)}},
             {{grain_density, 1e-2 / (1000 * gravity)}}, {{loam(), 1e6}}, {1000, 1e6}, std::move(points), 1);
-        column.set_rain([](double) { return 1e-4; });
+        column.set_rain([=](double) { return 1e-4; });
         const double before = water_of(column.points());
         for (int i = 1; i <= 3000; ++i) REQUIRE(column.step(column.critical_step(), i % 100 == 0));
         const double gained = column.rained() - column.run_off() - column.seepage();
@@ -329,7 +330,7 @@ TEST_CASE("rain on an unsaturated column enters it, and no water is lost") {
     ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e7, 0.3)}},
                                                  {{grain_density, 1e-4 / (1000 * gravity)}}, {{soil, 1e6}}, {1000, 1e6},
                                                  wet_column(cell_size, 20, 0.85), 1);
-    column.set_rain([](double) { return 1e-4; });
+    column.set_rain([=](double) { return 1e-4; });
     const double before = water_of(column.points()), dt = column.critical_step();
     const auto steps = static_cast<int64_t>(std::ceil(2 / dt));
     for (int64_t i = 1; i <= steps; ++i) column.step(dt, i == steps);
@@ -350,7 +351,7 @@ TEST_CASE("a full column sheds the rain that it cannot hold, and its water stays
     ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e9, 0.3)}},
                                                  {{grain_density, 1e-4 / (1000 * gravity)}}, {{loam(), bulk_modulus}},
                                                  {1000, bulk_modulus}, std::move(points), 1);
-    column.set_rain([](double) { return 1e-4; });
+    column.set_rain([=](double) { return 1e-4; });
     const double before = water_of(column.points()), dt = column.critical_step();
     const auto steps = static_cast<int64_t>(std::ceil(2 / dt));
     for (int64_t i = 1; i <= steps; ++i) column.step(dt, i == steps);
@@ -414,6 +415,72 @@ TEST_CASE("an edge is found from the share of the surroundings below it") {
         // By parts, integral of (0.1 + z) dN/dy = 0.1 N(above) + integral of N.
         const NodeVector sum{0, 2 * (0.1 * spline(above) + share)};
         CHECK(ground.distance_to(4 * gas, sum, 4 * share) == doctest::Approx(2 * gas_moment / gas).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("a linear field drives the very flow that it should through an edge, however few and uneven the points are") {
+    struct Point {
+        double x, y, volume, mass;  // place from the node, in cells
+    };
+    constexpr double size = 0.5;  // m
+    constexpr std::array<Point, 5> points{{{-0.7, -0.9, 0.06, 80},
+                                           {0.3, -0.8, 0.05, 120},
+                                           {-0.2, -0.1, 0.07, 90},
+                                           {0.9, -0.4, 0.04, 70},
+                                           {0.6, 0.2, 0.05, 60}}};
+    const auto spline = [](double x) {
+        return std::abs(x) < 0.5 ? 0.75 - x * x : 0.5 * std::pow(1.5 - std::abs(x), 2);
+    };
+    const auto slope = [](double x) {  // by the node's distance to the point, per metre
+        return (std::abs(x) < 0.5 ? -2 * x : -std::copysign(1.5 - std::abs(x), x)) / size;
+    };
+    double volume = 0, mass = 0;
+    NodeVector sum, middle;
+    NodeMoments moments;
+    for (const Point& p : points) {
+        const double x = p.x * size, y = p.y * size, along_x = p.volume * slope(p.x) * spline(p.y),
+                     along_y = p.volume * spline(p.x) * slope(p.y), share = p.mass * spline(p.x) * spline(p.y);
+        volume += p.volume * spline(p.x) * spline(p.y);
+        mass += share;
+        middle = {middle.x + share * x, middle.y + share * y};
+        sum = {sum.x + along_x, sum.y + along_y};
+        moments = {moments.xx + x * along_x, moments.yy + y * along_y, moments.yx + y * along_x,
+                   moments.xy + x * along_y};
+    }
+    middle = {middle.x / mass, middle.y / mass};
+    GroundEdge edge(sum, volume / (size * size), size);
+    const double by_share = edge.more;
+    edge.fit(volume, sum, middle, moments);
+    CHECK(std::abs(edge.more - by_share) > 0.01);  // these points are no even filling
+    NodeVector pushed;                             // by a head that rises by 1 a metre along the normal
+    for (const Point& p : points) {
+        const double x = p.x * size - middle.x, y = p.y * size - middle.y;
+        const double head = p.volume * (edge.normal.x * x + edge.normal.y * y);
+        pushed = {pushed.x + head * slope(p.x) * spline(p.y), pushed.y + head * spline(p.x) * slope(p.y)};
+    }
+    CHECK(dot(edge.normal, edge.stretched(edge.stretched(pushed))) == doctest::Approx(-volume).epsilon(1e-12));
+}
+
+TEST_CASE("ground takes the rain that it conducts wherever in a cell its surface lies") {
+    constexpr size_t cells = 6;
+    constexpr double conductivity = 1e-3, height = 1, cell_size = height / cells, nearly_full = 54;  // m/s, m, m, s
+    for (const double above : {0.0, 0.25, 0.5, 0.75}) {  // of the surface over an edge of cells, in cells
+        const double taller = 1 + above / cells;
+        FreePoints points = wet_column(cell_size, cells, 0.85);
+        for (size_t p = 0; p < points.count; ++p) {
+            for (const PointField field : {position_y, point_volume, solid_mass, water_mass})
+                points[field][p] *= taller;
+            const double depth = height * taller - points[position_y][p];
+            points[stress_yy][p] = -block_density * gravity * depth;
+            points[stress_xx][p] = points[stress_zz][p] = points[stress_yy][p] * 3 / 7;
+        }
+        ExplicitMixture<Filling::unsaturated> column(
+            cell_size, column_walls(cell_size), gravity, {{elasticity(2e7, 0.3)}},
+            {{grain_density, conductivity / (1000 * gravity)}}, {{loam(), 1e7}}, {1000, 1e7}, std::move(points), 1);
+        column.set_rain([](double) { return conductivity; });
+        const auto steps = static_cast<int>(std::ceil(nearly_full / column.critical_step()));
+        for (int i = 1; i <= steps; ++i) column.step(nearly_full / steps, i == steps);
+        CHECK(column.run_off() < 2e-3 * column.rained());
     }
 }
 

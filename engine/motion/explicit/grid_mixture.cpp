@@ -6,6 +6,7 @@
 namespace talus {
 namespace {
 
+constexpr double thin_share = 0.25;  // of a cell's volume: less than any node has whose place is in the ground
 constexpr double full_share = 0.95;  // of a cell's volume: with less, a node is at the ground's edge,
 constexpr double cut_share =
     0.85;  // and with a neighbour that has less than this: an edge half a cell and more above a node leaves it 5/6
@@ -104,11 +105,13 @@ void GridMixture<has_gas, exchanges>::end_step(double dt) {
         for (const auto [node, up] : part_edges_[number]) {
             solve(node, dt, part);
             part.bound.add(momentum[node].mass, velocity[node]);
-            if constexpr (!exchanges) clear_sums(node);
         }
-        if constexpr (!exchanges) mirror_part(number);
+        if (surroundings.empty()) finish_edge(number);
     });
     speed = std::max(inner_speed, edge_speed);
+    if (!surroundings.empty()) {
+        for_each_part([this](size_t number, PartSums&) { finish_edge(number); });
+    }
     if (!immersed) cross_surface(dt);
     if constexpr (exchanges) {
         for_each_part([this, dt](size_t number, PartSums& part) {
@@ -121,6 +124,14 @@ void GridMixture<has_gas, exchanges>::end_step(double dt) {
     }
     mirror();
     flow_time = dt;
+}
+
+/// With exchange, solutes are to be carried first.
+template <bool has_gas, bool exchanges>
+void GridMixture<has_gas, exchanges>::finish_edge(size_t part) {
+    if constexpr (exchanges) return;
+    for (const auto [node, up] : part_edges_[part]) clear_sums(node);
+    mirror_part(part);
 }
 
 /// For what the points give next.
@@ -296,6 +307,43 @@ GroundEdge GridMixture<has_gas, exchanges>::edge_at(size_t node) const {
     return edge;
 }
 
+/// What the pressure does to a node's surroundings at the edge, per volume, N/m3: for a linear field, the field's own.
+template <bool has_gas, bool exchanges>
+NodeVector GridMixture<has_gas, exchanges>::drive_at(size_t node, const GroundEdge& edge) const {
+    const NodeGradients& sums = gradients[node];
+    const double push = means[node].push / momentum[node].mass, per_volume = 1 / means[node].volume;
+    const NodeVector driven =
+        edge.stretched(edge.stretched({sums.push_x - push * sums.edge_x, sums.push_y - push * sums.edge_y}));
+    return {per_volume * driven.x, per_volume * driven.y};
+}
+
+/// The next node into the ground; the node itself where there is none that sees more.
+template <bool has_gas, bool exchanges>
+size_t GridMixture<has_gas, exchanges>::into_ground(size_t node, const NodeVector& outwards) const {
+    const auto stride = static_cast<size_t>(grid.cells[0]);
+    const bool is_level = std::abs(outwards.y) > std::abs(outwards.x);
+    const size_t next =
+        is_level ? (outwards.y > 0 ? node - stride : node + stride) : (outwards.x > 0 ? node - 1 : node + 1);
+    const bool sees_more = surroundings[next].share > thin_share && is_at_edge(next);
+    return surroundings[node].share < thin_share && sees_more ? next : node;
+}
+
+/// What flows by gravity has the permeability that it comes with, where the ground above is wetter: by the mean, which falls steeply from full soil, less
+/// would flow below a full node than comes from above. So much is added to the flow downwards, kg/(m2 s): the wetter ground's share of what of
+/// the water's velocity through the solid is gravity's, and no more than it adds to Darcy's law.
+template <bool has_gas, bool exchanges>
+double GridMixture<has_gas, exchanges>::falls_more(size_t node, double pushed_up, double velocity_up) const {
+    const size_t above = node + static_cast<size_t>(grid.cells[0]);
+    const double more = surroundings[above].permeability / surroundings[node].permeability - 1;
+    if (!(more > 0) || !(pushed_up < 0) || !(velocity_up < 0)) return 0;
+    const Means& mean = means[node];
+    const double weight = gravity * liquid_density * mean.volume;
+    const double of_gravity = std::min(weight / -pushed_up, 1.0);
+    const double flow = liquid_momentum[node].mass * -velocity_up;
+    const double by_darcy = liquid_density * mean.lambda(momentum[node].mass) * -pushed_up;
+    return more * of_gravity * std::min(flow, by_darcy) / mean.volume;
+}
+
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& part) {
     const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
@@ -314,14 +362,6 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
     const auto conductance_of = [&](double lambda) { return dt * liquid_content / (1 + drag_of(lambda)); };
     const double conductance = conductance_of(mean.lambda(mass));
     const double edge_conductance = conductance_of(mean.edge_lambda(mass));
-    const double unit_weight = gravity * liquid_density;
-    double falls_more = 0;
-    if constexpr (!has_gas) {
-        const size_t above = node + static_cast<size_t>(grid.cells[0]);
-        const double wetter = surroundings.empty() ? 0.0 : surroundings[above].permeability * mass;
-        if (wetter > mean.permeability)
-            falls_more = (conductance_of(wetter / mean.resistance) - conductance) * unit_weight;
-    }
     const double spread = conductance * mean.volume / (cell_volume() * mass);
     liquid_of(evening[node]) = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
@@ -365,7 +405,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
         }
         move(&NodeVector::x, pushed, gas_pushed);
         move(&NodeVector::y, pushed, gas_pushed);
-        if (falls_more > 0) through.y -= falls_more * std::clamp(-pushed.y / (unit_weight * mean.volume), 0.0, 1.0);
+        if (!surroundings.empty()) through.y -= falls_more(node, pushed.y, liquid.y - solid.y);
         if (!rubs_ || contact_at_[node] < 0) return;
         ImpulseAnswer by_impulse{coupled, drag / (1 + drag), liquid_mass / mean.volume, push};
         if constexpr (has_gas) {
@@ -388,14 +428,21 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
         if constexpr (has_gas) gas.returned[node] = dot(flux[node].gas, gas_outwards);
         return;
     }
-    const GroundEdge edge = edge_at(node);
+    GroundEdge edge = edge_at(node);
     const double edge_head = gravity * liquid_density * (height_of(node) + edge.height);
     if (immersed) {
         flow({sums.push_x - edge_head * outwards.x, sums.push_y - edge_head * outwards.y}, {}, 1);
         part.seepage += dt * dot(through, outwards);
         return;
     }
-    const NodeVector pushed = edge.stretched(inner), gas_pushed = edge.stretched(gas_inner);
+    NodeVector pushed = edge.stretched(inner);
+    const NodeVector gas_pushed = edge.stretched(gas_inner);
+    if (edge.is_blind) {  // pushed as the next node into the ground
+        const size_t next = into_ground(node, outwards);
+        const NodeVector drive = drive_at(next, edge_at(next));
+        pushed = {mean.volume * drive.x, mean.volume * drive.y};
+        edge.more = 0;
+    }
     flow(pushed, gas_pushed, 1 + edge.more);
     through = edge.stretched(through);
     returned[node] = dot(through, outwards);

@@ -241,6 +241,7 @@ private:
     void fold_forces(double dt);
     void fold_forces_of(size_t part);
     void find_surroundings();
+    void finish_edge(size_t part);
     void clear_sums(size_t node);
     [[nodiscard]] double facing_up(size_t node) const { return std::max(gradients[node].edge_y, 0.0); }  // at the edge
     void solve_inner_nodes(size_t number, double dt, PartSums& part);
@@ -249,7 +250,10 @@ private:
     void cross_surface(double dt);
     [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
     void solve(size_t node, double dt, PartSums& part);
+    [[nodiscard]] double falls_more(size_t node, double pushed_up, double velocity_up) const;
     [[nodiscard]] GroundEdge edge_at(size_t node) const;
+    [[nodiscard]] NodeVector drive_at(size_t node, const GroundEdge& edge) const;
+    [[nodiscard]] size_t into_ground(size_t node, const NodeVector& outwards) const;
     [[nodiscard]] double wetted_share(size_t node) const;
     [[nodiscard]] double gas_distance(size_t node, const GroundEdge& edge) const;
     void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed,

@@ -53,14 +53,15 @@ struct NodeMoments {
 };
 
 struct GroundEdge {
-    NodeVector normal;    ///< outwards; none where the sum of V grad N is none
-    double length = 0;    ///< that sum's, m
-    double above = 0;     ///< of the edge, from the node along the normal, m
-    double height = 0;    ///< of the edge above the node, m
-    double distance = 0;  ///< from the middle of the ground to the edge, m; 0: no edge
-    double more = 0;      ///< what a stretch adds along the normal, per unit
-    double reach = 0;     ///< depth of the ground in the surroundings, m
-    double spread = 0;    ///< variance of that depth times the square of 1 + more, m2
+    NodeVector normal;      ///< outwards; none where the sum of V grad N is none
+    double length = 0;      ///< that sum's, m
+    double above = 0;       ///< of the edge, from the node along the normal, m
+    double height = 0;      ///< of the edge above the node, m
+    double distance = 0;    ///< from the middle of the ground to the edge, m; 0: no edge
+    double more = 0;        ///< what a stretch adds along the normal, per unit
+    double reach = 0;       ///< depth of the ground in the surroundings, m
+    double spread = 0;      ///< variance of that depth times the square of 1 + more, m2
+    bool is_blind = false;  ///< to a gradient along the normal: its points lie hardly apart
 
     /// `sum`: of V grad N, m; `share`: of the node's surroundings that is ground.
     GroundEdge(const NodeVector& sum, double share, double cell_size) {
@@ -84,7 +85,8 @@ struct GroundEdge {
         const double xx = moments.xx - middle.x * sum.x, yy = moments.yy - middle.y * sum.y;
         const double yx = moments.yx - middle.y * sum.x, xy = moments.xy - middle.x * sum.y;
         const double facing = -(normal.x * normal.x * xx + normal.x * normal.y * (xy + yx) + normal.y * normal.y * yy);
-        more = std::sqrt(std::clamp(volume / std::max(facing, volume / most_sided), 1.0, most_sided)) - 1;
+        is_blind = most_sided * facing < volume;
+        more = std::sqrt(is_blind ? most_sided : std::max(volume / facing, 1.0)) - 1;
         distance = std::max(above - (normal.x * middle.x + normal.y * middle.y), 0.5 * distance);
     }
 
