@@ -172,7 +172,6 @@ bool GridMixture<has_gas, exchanges>::is_at_edge(size_t node) const {
 /// In a pass of its own: in the next one nodes look at their neighbours'.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::find_surroundings() {
-    if constexpr (has_gas) return;
     const auto mirror = [this](NodePair nodes, const Mirror&, const Mirror&) {
         surroundings[nodes.beyond] = surroundings[nodes.inside];
     };
@@ -180,10 +179,9 @@ void GridMixture<has_gas, exchanges>::find_surroundings() {
         fold_forces_of(number);
         for_each_node_of(number, [&](size_t i) {
             const double mass = momentum[i].mass;
-            surroundings[i] = {};
-            if constexpr (!has_gas) {
-                if (mass > 0) surroundings[i] = {means[i].permeability / mass, means[i].volume / cell_volume()};
-            }
+            const NodeSurroundings own{means[i].lambda(mass) / means[i].edge_lambda(mass),
+                                       means[i].volume / cell_volume()};
+            surroundings[i] = mass > 0 ? own : NodeSurroundings{};
         });
         for_each_meeting_of(number, mirror);
     });

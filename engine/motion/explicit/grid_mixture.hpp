@@ -115,7 +115,7 @@ struct OpenSurface {
 
 /// What a node in moist ground tells its neighbours.
 struct NodeSurroundings {
-    double permeability = 0;  ///< mean k_r of the points
+    double permeability = 0;  ///< mean k_r of the points, over that of full pores
     double share = 0;         ///< of its surroundings that is ground
 };
 
