@@ -29,8 +29,9 @@ inline FreePoints block_of_points(double cell_size, double x, double y, size_t c
     points.assign(4 * columns * rows, fields);
     const double spacing = cell_size / 2;
     for (size_t p = 0; p < points.count; ++p) {
-        points[position_x][p] = x + (static_cast<double>(p % (2 * columns)) + 0.5) * spacing;
-        points[position_y][p] = y + (static_cast<double>(p / (2 * columns)) + 0.5) * spacing;
+        const size_t row = p / (2 * columns), column = p % (2 * columns);
+        points[position_x][p] = x + (static_cast<double>(column) + 0.5) * spacing;
+        points[position_y][p] = y + (static_cast<double>(row) + 0.5) * spacing;
         points[point_volume][p] = spacing * spacing;
         points[solid_mass][p] = block_density * spacing * spacing;
     }
