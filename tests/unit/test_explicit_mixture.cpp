@@ -176,7 +176,7 @@ TEST_CASE("wet ground that falls apart loses no water") {
         ExplicitMixture<Filling::unsaturated> column(
             cell_size, walls, gravity, {{elasticity(1e6, 0.3), true, mohr_coulomb({1, 10}, 0, 1e300)}},
             {{grain_density, 1e-2 / (1000 * gravity)}}, {{loam(), 1e6}}, {1000, 1e6}, std::move(points), 1);
-        column.set_rain([=](double) { return 1e-4; });
+        column.set_rain([](double) { return 1e-4; });
         const double before = water_of(column.points());
         for (int i = 1; i <= 3000; ++i) REQUIRE(column.step(column.critical_step(), i % 100 == 0));
         const double gained = column.rained() - column.run_off() - column.seepage();
@@ -330,7 +330,7 @@ TEST_CASE("rain on an unsaturated column enters it, and no water is lost") {
     ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e7, 0.3)}},
                                                  {{grain_density, 1e-4 / (1000 * gravity)}}, {{soil, 1e6}}, {1000, 1e6},
                                                  wet_column(cell_size, 20, 0.85), 1);
-    column.set_rain([=](double) { return 1e-4; });
+    column.set_rain([](double) { return 1e-4; });
     const double before = water_of(column.points()), dt = column.critical_step();
     const auto steps = static_cast<int64_t>(std::ceil(2 / dt));
     for (int64_t i = 1; i <= steps; ++i) column.step(dt, i == steps);
@@ -351,7 +351,7 @@ TEST_CASE("a full column sheds the rain that it cannot hold, and its water stays
     ExplicitMixture<Filling::unsaturated> column(cell_size, column_walls(cell_size), gravity, {{elasticity(1e9, 0.3)}},
                                                  {{grain_density, 1e-4 / (1000 * gravity)}}, {{loam(), bulk_modulus}},
                                                  {1000, bulk_modulus}, std::move(points), 1);
-    column.set_rain([=](double) { return 1e-4; });
+    column.set_rain([](double) { return 1e-4; });
     const double before = water_of(column.points()), dt = column.critical_step();
     const auto steps = static_cast<int64_t>(std::ceil(2 / dt));
     for (int64_t i = 1; i <= steps; ++i) column.step(dt, i == steps);

@@ -307,7 +307,8 @@ GroundEdge GridMixture<has_gas, exchanges>::edge_at(size_t node) const {
 
 /// What the pressure does to a node's surroundings at the edge, per volume, N/m3: for a linear field, the field's own.
 template <bool has_gas, bool exchanges>
-NodeVector GridMixture<has_gas, exchanges>::drive_at(size_t node, const GroundEdge& edge) const {
+NodeVector GridMixture<has_gas, exchanges>::drive_at(size_t node) const {
+    const GroundEdge edge = edge_at(node);
     const NodeGradients& sums = gradients[node];
     const double push = means[node].push / momentum[node].mass, per_volume = 1 / means[node].volume;
     const NodeVector driven =
@@ -436,8 +437,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
     NodeVector pushed = edge.stretched(inner);
     const NodeVector gas_pushed = edge.stretched(gas_inner);
     if (edge.is_blind) {  // pushed as the next node into the ground
-        const size_t next = into_ground(node, outwards);
-        const NodeVector drive = drive_at(next, edge_at(next));
+        const NodeVector drive = drive_at(into_ground(node, outwards));
         pushed = {mean.volume * drive.x, mean.volume * drive.y};
         edge.more = 0;
     }

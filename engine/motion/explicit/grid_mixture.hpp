@@ -252,7 +252,7 @@ private:
     void solve(size_t node, double dt, PartSums& part);
     [[nodiscard]] double falls_more(size_t node, double pushed_up, double velocity_up) const;
     [[nodiscard]] GroundEdge edge_at(size_t node) const;
-    [[nodiscard]] NodeVector drive_at(size_t node, const GroundEdge& edge) const;
+    [[nodiscard]] NodeVector drive_at(size_t node) const;
     [[nodiscard]] size_t into_ground(size_t node, const NodeVector& outwards) const;
     [[nodiscard]] double wetted_share(size_t node) const;
     [[nodiscard]] double gas_distance(size_t node, const GroundEdge& edge) const;
