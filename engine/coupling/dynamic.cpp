@@ -377,7 +377,8 @@ DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh&
                       std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads, gas);
     }
     return Motion(std::in_place_type<Mixture>, cell_size, walls, scene.gravity, explicit_soils(scene),
-                  std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads);
+                  std::move(hydraulics), std::move(tables), water, std::move(seeded.points), threads, ExplicitGas{},
+                  ExplicitExchange{}, scene.dynamics.rest_speed);
 }
 
 DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Handover& handover,

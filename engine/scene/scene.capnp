@@ -547,8 +547,9 @@ struct Dynamics {
   # Width and height of a cell. Required for a dynamic ground. Taken a little smaller where `left` and `right` are walls, so that they lie a
   # whole number of cells apart.
   restSpeed @1 :Float64 = nan $limits(unit = "m/s", low = 1e-9, high = 10);
-  # Of dry ground: what has been slower than this for 1000 substeps, with all that lies up to 8 cells away, is held, as it lies and with its
-  # stress, until something near it moves faster; it takes next to no time. Left out: nothing is held.
+  # What has been slower than this for 1000 substeps, solid and water, with all that lies up to 8 cells away, is held, as it lies and with its
+  # stress and water, until something near it moves faster; it takes next to no time, and rain on it runs off. Ground that is still gaining speed may
+  # be held for good if this is too large. Not where gas moves. Left out: nothing is held.
 }
 
 struct Schedule {

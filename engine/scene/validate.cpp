@@ -37,8 +37,8 @@ void check_regime(const Check& check, const Scene& scene) {
         rest_speed.unused(rests, "a ground whose regime is not dynamic");
         return;
     }
-    rest_speed.require(!(rests && scene.physics.water), "= " + value_text(scene.dynamics.rest_speed) +
-                                                            " m/s: is not supported yet where the ground holds water");
+    rest_speed.require(!(rests && scene.physics.gas), "= " + value_text(scene.dynamics.rest_speed) +
+                                                          " m/s: is not supported yet where gas moves (physics.gas)");
     cell_size.needed(given_positive(scene.dynamics.cell_size), "a dynamic ground");
     const Check physics = check.at("physics");
     physics.at("deforming").require(scene.physics.deforming, "= false: must be true where the regime is dynamic");

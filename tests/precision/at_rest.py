@@ -1,4 +1,4 @@
-"""What a point that is held at rest costs beside one that moves: the cohesive slope with a long floor in front of it."""
+"""What a point that is held at rest costs beside one that moves: the cohesive slope, dry and moist, with a long floor in front of it."""
 
 import time
 
@@ -8,10 +8,17 @@ from rows import read_scene
 
 REST_SPEED = 1e-3  # m/s
 STEP, SETTLED, STEPS = 0.1, 60, 100  # s; steps of the host, of which those from SETTLED on are timed
+MOISTURE = {"retention": {"model": "vanGenuchten", "alpha": 4e-05, "n": 1.2}, "relativePermeability": {"model": "mualem"},
+            "conductivity": {"along": 1e-05}}
 
 
-def scene_of(rest_speed):
+def scene_of(rest_speed, is_moist):
     scene = read_scene("cohesive_slope")
+    if is_moist:
+        scene["physics"]["water"] = True
+        scene["water"] = {"bulkModulus": 1e7}
+        scene["soils"][0]["hydraulics"] = MOISTURE
+        scene["initial"].update(flow="saturation", saturation=0.6)
     scene["ground"]["section"].update(terrain=[[0, 5], [6, 5], [11, 1], [100, 1]], base=[[0, 0], [100, 0]])
     if rest_speed:
         scene["dynamics"]["restSpeed"] = rest_speed
@@ -20,9 +27,9 @@ def scene_of(rest_speed):
     return scene
 
 
-def measure(rest_speed):
+def measure(rest_speed, is_moist):
     """Seconds a substep, points and those held, once the floor is quiet; and what came of the slide."""
-    engine = talus.Engine(talus.Scene.from_json(scene_of(rest_speed)))
+    engine = talus.Engine(talus.Scene.from_json(scene_of(rest_speed, is_moist)))
     seconds, substeps, held = 0.0, 0, []
     for step in range(STEPS):
         begun = time.process_time()
@@ -36,11 +43,11 @@ def measure(rest_speed):
             "run_out": report["run_out"], "dissipated_energy": report["dissipated_energy"]}
 
 
-def run():
+def run(is_moist):
     """Nanoseconds of a substep of points that move and that are held; what holding changes."""
-    free, held = measure(0.0), measure(REST_SPEED)
+    free, held = measure(0.0, is_moist), measure(REST_SPEED, is_moist)
     moving = free["seconds_a_substep"] / free["points"]
     resting = (held["seconds_a_substep"] - moving * (held["points"] - held["held"])) / held["held"]
     changes = {name: abs(held[name] / free[name] - 1) for name in ("run_out", "dissipated_energy")}
-    return {"rest_speed": REST_SPEED, "points": held["points"], "held": held["held"], "moving_ns": 1e9 * moving,
-            "resting_ns": 1e9 * resting, "ratio": resting / moving, "changes": changes}
+    return {"ground": "moist" if is_moist else "dry", "rest_speed": REST_SPEED, "points": held["points"], "held": held["held"],
+            "moving_ns": 1e9 * moving, "resting_ns": 1e9 * resting, "ratio": resting / moving, "changes": changes}

@@ -140,6 +140,9 @@ def strength_cases():
     resting = dry_bank(walls=RUBBING)
     resting["dynamics"]["restSpeed"] = 0.05
     yield Case("dynamic/held_at_rest", resting, [["step", 0.1, 100]])
+    resting = wet_bank(rain=1e-5)
+    resting["dynamics"]["restSpeed"] = 0.05
+    yield Case("dynamic/moist_held_at_rest", resting, [["step", 0.1, 100]])
     yield Case("dynamic/no_tension", dry_bank(tensile=0.0), SLIDE)
 
 

@@ -210,7 +210,10 @@ def moving_section(seed):
     elif draw.choice((True, False)):
         scene["dynamics"]["restSpeed"] = draw.log_uniform(1e-6, 1)
     duration = draw.log_uniform(*SUBSTEPS) * crossing_time(soils, water, cell_size)
-    return scene, [["step", float(f"{duration * draw.uniform(0.01, 0.5):.4g}"), 1] for _ in range(draw.whole(1, 5))]
+    steps = [["step", float(f"{duration * draw.uniform(0.01, 0.5):.4g}"), 1] for _ in range(draw.whole(1, 5))]
+    if is_wet and draw.choice((True, False)):
+        scene["dynamics"]["restSpeed"] = draw.log_uniform(1e-6, 1)
+    return scene, steps
 
 
 def moving_case(number):

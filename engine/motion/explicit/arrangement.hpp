@@ -3,8 +3,8 @@
 // Points lie in the order of strips of rows of cells. Strips that are not neighbours share no node: even ones are handled at once, then
 // odd ones, and every node receives its shares in the same order for any number of threads.
 //
-// A region is as wide as a strip is high. Where all points of a region and of its neighbours have been quiet, its points are held: they are
-// not handled.
+// A region is as wide as a strip is high. Where all points of a region and of its neighbours have been slower than the rest speed for a while, its
+// points are held: they lie still, with their stress and their water, and are not handled. Nodes that they reach stand still.
 #pragma once
 
 #include "background/grid.hpp"
@@ -28,7 +28,9 @@ struct Strip {
 
 class Arrangement {
 public:
-    explicit Arrangement(Threads threads) : threads_(std::move(threads)) {}
+    /// With a rest speed (m/s) above 0, points of dry ground, and of moist ground whose gas is at rest, may be held.
+    explicit Arrangement(Threads threads, double rest_speed = 0)
+        : threads_(std::move(threads)), rest_speed_(rest_speed) {}
     [[nodiscard]] const Threads& threads() const { return threads_; }
 
     /// Arranges points, and gives the grid room about them, by whole cells; it only grows. True: it grew, and what nodes hold must move.
@@ -39,60 +41,58 @@ public:
 
     /// Whether points that may move by `cells` more would leave the room they were arranged with.
     [[nodiscard]] bool is_outgrown(double cells) const;
-    void drift(double cells) { drift_ += cells; }
+    /// All points have moved, by so many cells at most, in one substep.
+    void count_substep(double cells) {
+        drift_ += cells;
+        ++substeps_;
+    }
 
-    /// Finds which points are held, those whose surroundings have been quiet for so many substeps, and the spans of the others. True: not
-    /// the same as before.
-    bool hold(const FreePoints& points, const Grid& grid, int32_t substeps);
+    /// Counts for how many substeps points have been slow, whose velocities must be their own. True: others are to be held than are, and what nodes
+    /// have of the points is to be made anew.
+    bool look_for_rest(FreePoints& points);
+
+    /// Finds which points are held, from their counts alone; they have no velocity from then on.
+    void hold(FreePoints& points, const Grid& grid);
 
     /// Of nodes that points reach which are not held.
     [[nodiscard]] const std::vector<Span>& spans() const { return spans_; }
+
+    /// One a node: not 0 where points reach it that are held; empty where none is.
+    [[nodiscard]] std::vector<uint8_t> still_nodes(const FreePoints& points, const Grid& grid) const;
 
     /// handle(points), for all of a strip that are not held, in as many threads as there are.
     template <class Handle>
     void for_each_strip(const Handle& handle) const;
 
-    /// handle(points) for all that are held.
-    template <class Handle>
-    void for_each_held(const Handle& handle) const;
-
 private:
-    struct Region {
-        Strip points;
-        bool is_held;
-    };
     bool fit(const FreePoints& points, Grid& grid) const;
-    [[nodiscard]] std::vector<bool> find_quiet(const FreePoints& points, int32_t substeps) const;
+    void count_slow(FreePoints& points) const;
+    [[nodiscard]] std::vector<bool> find_quiet_regions(const FreePoints& points) const;
+    [[nodiscard]] std::vector<uint8_t> find_held(const FreePoints& points) const;
+    void find_runs();
     void find_spans(const FreePoints& points, const Grid& grid);
 
     Threads threads_;
+    double rest_speed_;  // m/s
     size_t strips_ = 0, regions_a_strip_ = 0;
-    std::vector<Region> regions_;
+    std::vector<Strip> regions_;
+    std::vector<uint8_t> held_;      // one a point; empty: none is
+    std::vector<Strip> runs_;        // of points that are not held, strip by strip
+    std::vector<size_t> run_start_;  // strips + 1
     std::vector<Span> spans_;
-    double drift_ = 0;  // cells that a point may have moved since it was arranged
+    double drift_ = 0;      // cells that a point may have moved since it was arranged
+    int32_t substeps_ = 0;  // since rest was looked for
 };
 
 template <class Handle>
 void Arrangement::for_each_strip(const Handle& handle) const {
-    const auto handle_runs = [&](size_t strip) {
-        const size_t last = (strip + 1) * regions_a_strip_;
-        for (size_t r = strip * regions_a_strip_; r < last; ++r) {
-            if (regions_[r].is_held) continue;
-            const size_t first = regions_[r].points.first;
-            while (r + 1 < last && !regions_[r + 1].is_held) ++r;
-            handle(Strip{first, regions_[r].points.last});
-        }
-    };
     for (const size_t parity : {size_t{0}, size_t{1}}) {
         const size_t strips = (strips_ + 1 - parity) / 2;
-        threads_.for_each(strips, [&](size_t s) { handle_runs(2 * s + parity); });
+        threads_.for_each(strips, [&](size_t s) {
+            const size_t strip = 2 * s + parity;
+            for (size_t run = run_start_[strip]; run < run_start_[strip + 1]; ++run) handle(runs_[run]);
+        });
     }
-}
-
-template <class Handle>
-void Arrangement::for_each_held(const Handle& handle) const {
-    for (const Region& region : regions_)
-        if (region.is_held) handle(region.points);
 }
 
 /// What nodes of `old` hold, where they are in `grid`, which grew from it.

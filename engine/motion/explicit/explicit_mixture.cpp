@@ -4,6 +4,7 @@
 #include "motion/explicit/fluid_gifts.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace talus {
@@ -53,14 +54,15 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
                                           std::vector<ExplicitSoil> soils, std::vector<ExplicitHydraulics> hydraulics,
                                           std::vector<SaturationTable> tables, const ExplicitWater& water,
                                           FreePoints points, int32_t threads, const ExplicitGas& gas,
-                                          [[maybe_unused]] const ExplicitExchange& exchange)
+                                          [[maybe_unused]] const ExplicitExchange& exchange, double rest_speed)
     : soils_(std::move(soils)),
       hydraulics_(std::move(hydraulics)),
       tables_(std::move(tables)),
       water_(water),
       points_(std::move(points)),
       gas_(gas),
-      arrangement_(Threads(threads)) {
+      arrangement_(Threads(threads), rest_speed) {
+    assert(!has_gas || rest_speed == 0);
     for (const ExplicitSoil& soil : soils_) {
         yields_ = yields_ || soil.yields;
         is_inertial_ = is_inertial_ || soil.friction_rise > 0;
@@ -85,14 +87,22 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
 
 template <Filling filling>
 void ExplicitMixture<filling>::restart() {
+    start_anew();
+    nodes_.rained = nodes_.run_off = nodes_.seepage = nodes_.gas.escaped = 0;
+    nodes_.solutes.evaporated = 0;
+}
+
+/// From points that hold all that there is, what is due to them included.
+template <Filling filling>
+void ExplicitMixture<filling>::start_anew() {
+    std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
+    std::fill(nodes_.gas.returned.begin(), nodes_.gas.returned.end(), 0.0);
+    std::fill(nodes_.solutes.returned.begin(), nodes_.solutes.returned.end(), SoluteReturn{});
     nodes_.start_grid();
     restarted_ = true;
     arrange_points();
-    std::fill(nodes_.returned.begin(), nodes_.returned.end(), 0.0);
-    std::fill(nodes_.gas.returned.begin(), nodes_.gas.returned.end(), 0.0);
-    nodes_.rained = nodes_.run_off = nodes_.seepage = nodes_.gas.escaped = 0;
-    nodes_.solutes.evaporated = 0;
-    std::fill(nodes_.solutes.returned.begin(), nodes_.solutes.returned.end(), SoluteReturn{});
+    arrangement_.hold(points_, nodes_.grid);
+    take_arrangement();
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
@@ -105,7 +115,7 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     const double drift = dt * nodes_.speed / nodes_.grid.cell_size;
     if (!Arrangement::bears(drift)) return false;
     if (arrangement_.is_outgrown(drift)) arrange_points();
-    arrangement_.drift(drift);
+    arrangement_.count_substep(drift);
     arrangement_.for_each_strip([&](Strip strip) {
         if (is_last) {
             move_and_give<true>(strip, dt);
@@ -116,7 +126,11 @@ bool ExplicitMixture<filling>::step(double dt, bool is_last) {
     nodes_.begin_step();
     if (!is_last) return true;
     arrangement_.for_each_strip([this](Strip strip) { owe_water(strip); });
-    if (filling != Filling::saturated) find_wave_speed();
+    if (arrangement_.look_for_rest(points_)) {
+        start_anew();
+    } else if (filling != Filling::saturated) {
+        find_wave_speed();
+    }
     return true;
 }
 
@@ -596,8 +610,7 @@ void ExplicitMixture<filling>::arrange_points() {
         if constexpr (has_gas) move_gas_nodes(old);
         nodes_.resize();
     }
-    nodes_.spans = arrangement_.spans();
-    std::fill(nodes_.surroundings.begin(), nodes_.surroundings.end(), NodeSurroundings{});
+    take_arrangement();
     nodes_.seepage += nodes_.flow_time * (returned - nodes_.total(nodes_.returned));
     if constexpr (has_gas) nodes_.gas.escaped += nodes_.flow_time * (gas_returned - nodes_.total(nodes_.gas.returned));
     if constexpr (exchanges) {
@@ -606,6 +619,13 @@ void ExplicitMixture<filling>::arrange_points() {
     }
     fall_rain();
     find_wave_speed();
+}
+
+template <Filling filling>
+void ExplicitMixture<filling>::take_arrangement() {
+    nodes_.spans = arrangement_.spans();
+    nodes_.still = arrangement_.still_nodes(points_, nodes_.grid);
+    std::fill(nodes_.surroundings.begin(), nodes_.surroundings.end(), NodeSurroundings{});
 }
 
 template <Filling filling>

@@ -68,11 +68,11 @@ template <Filling filling>
 class ExplicitMixture {
 public:
     /// The points' fields up to liquid_affine_yy must be sized, with three phases those up to gas_affine_yy, with exchange all. `tables`: one a soil,
-    /// none where saturated.
+    /// none where saturated. Rest speed: as ExplicitMotion's, of solid and liquid; held points keep their water. Not where gas moves.
     ExplicitMixture(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
                     std::vector<ExplicitHydraulics> hydraulics, std::vector<SaturationTable> tables,
                     const ExplicitWater& water, FreePoints points, int32_t threads, const ExplicitGas& gas = {},
-                    const ExplicitExchange& exchange = {});
+                    const ExplicitExchange& exchange = {}, double rest_speed = 0);
 
     /// As ExplicitMotion's. The water of the ground is the points' own and what is due to them.
     bool step(double dt, bool is_last);
@@ -125,6 +125,8 @@ private:
     [[nodiscard]] PoreStiffness pore_stiffness(size_t p, double porosity) const;
 
     void arrange_points();
+    void take_arrangement();
+    void start_anew();
     /// Of the pores, by the point's water; above 1 it is pressed together.
     [[nodiscard]] double share_filled(size_t p) const {
         const double grain_density = hydraulics_[static_cast<size_t>(points_.soil[p])].grain_density;

@@ -6,16 +6,9 @@
 #include <cmath>
 
 namespace talus {
-namespace {
-
-constexpr int32_t quiet_substeps = 1000;  // a wave has crossed some 500 cells
-
-}  // namespace
-
 ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
                                FreePoints points, int32_t threads, double rest_speed)
-    : soils_(std::move(soils)), points_(std::move(points)), arrangement_(Threads(threads)), rest_speed_(rest_speed) {
-    if (rest_speed > 0) points_.quiet.resize(points_.count);
+    : soils_(std::move(soils)), points_(std::move(points)), arrangement_(Threads(threads), rest_speed) {
     for (const ExplicitSoil& soil : soils_) {
         yields_ = yields_ || soil.yields;
         is_inertial_ = is_inertial_ || soil.friction_rise > 0;
@@ -30,8 +23,9 @@ ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double grav
 
 void ExplicitMotion::restart() {
     nodes_.start_grid();
-    substeps_ = 0;
     arrange_points();
+    arrangement_.hold(points_, nodes_.grid);
+    take_arrangement();
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
 }
@@ -42,7 +36,7 @@ bool ExplicitMotion::step(double dt, bool is_last) {
     const double drift = dt * nodes_.speed / nodes_.grid.cell_size;
     if (!arrangement_.bears(drift)) return false;
     if (arrangement_.is_outgrown(drift)) arrange_points();
-    arrangement_.drift(drift);
+    arrangement_.count_substep(drift);
     arrangement_.for_each_strip([&](Strip strip) {
         if (is_last) {
             move_and_give<true>(strip, dt);
@@ -50,64 +44,12 @@ bool ExplicitMotion::step(double dt, bool is_last) {
             move_and_give<false>(strip, dt);
         }
     });
-    ++substeps_;
-    if (is_last && rest_speed_ > 0) {
-        arrangement_.for_each_strip([this](Strip strip) { count_quiet(strip); });
-        substeps_ = 0;
-        if (arrangement_.hold(points_, nodes_.grid, quiet_substeps)) {
-            hold_points();
-            arrangement_.for_each_strip([this](Strip strip) { give(strip); });
-        }
+    if (is_last && arrangement_.look_for_rest(points_)) {
+        restart();
+        return true;
     }
     nodes_.begin_step();
     return true;
-}
-
-void ExplicitMotion::count_quiet(Strip strip) {
-    const double* x = points_[velocity_x];
-    const double* y = points_[velocity_y];
-    for (size_t p = strip.first; p < strip.last; ++p) {
-        const bool is_quiet = x[p] * x[p] + y[p] * y[p] < rest_speed_ * rest_speed_;
-        points_.quiet[p] = is_quiet ? std::min(points_.quiet[p] + substeps_, quiet_substeps) : 0;
-    }
-}
-
-/// What held points do to the nodes is found once; nodes that no other points reach stand still.
-void ExplicitMotion::hold_points() {
-    const size_t nodes = nodes_.grid.nodes();
-    nodes_.spans = arrangement_.spans();
-    nodes_.held.assign(nodes, {});
-    std::vector<NodeVector> force(nodes);
-    arrangement_.for_each_held([&](Strip strip) { give_held(strip, force); });
-    for (size_t i = 0; i < nodes; ++i) {
-        nodes_.held[i].x = force[i].x;
-        nodes_.held[i].y = force[i].y - nodes_.gravity * nodes_.held[i].mass;
-    }
-    const auto come_inside = [this](NodePair pair, const Mirror& mirror, const Mirror&) {
-        move_inside(nodes_.held[pair.inside], nodes_.held[pair.beyond], mirror);
-    };
-    nodes_.for_each_level_mirror(come_inside);
-    nodes_.for_each_upright_mirror(come_inside);
-    nodes_.momentum.assign(nodes, {});
-    nodes_.force.assign(nodes, {});
-    std::vector<NodeVector> velocity(nodes);
-    nodes_.for_each_node([&](size_t i) { velocity[i] = nodes_.velocity[i]; });
-    nodes_.velocity = std::move(velocity);
-}
-
-void ExplicitMotion::give_held(Strip strip, std::vector<NodeVector>& force) {
-    SplineBlock spline;
-    GiftBlock gift;
-    for (const PointField name : {velocity_x, velocity_y, affine_xx, affine_xy, affine_yx, affine_yy})
-        std::fill(points_[name] + strip.first, points_[name] + strip.last, 0.0);
-    for (size_t first = strip.first; first < strip.last; first += block_size) {
-        const size_t count = std::min(block_size, strip.last - first);
-        spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
-        for (size_t k = 0; k < count; ++k) gift[k].set(points_[solid_mass][first + k], {0, 0}, {0, 0}, {0, 0});
-        give_momentum(nodes_.grid, count, spline, gift, nodes_.held);
-        scatter_force(nodes_.grid, count, spline, points_[point_volume] + first, points_[stress_xx] + first,
-                      points_[stress_yy] + first, points_[stress_xy] + first, force);
-    }
 }
 
 void ExplicitMotion::stress_and_forces(Strip strip, double dt) {
@@ -177,10 +119,13 @@ void ExplicitMotion::arrange_points() {
         nodes_.momentum.assign(nodes_.grid.nodes(), {});
         nodes_.force.assign(nodes_.grid.nodes(), {});
     }
-    nodes_.spans = arrangement_.spans();
-    if (rest_speed_ > 0 && (arrangement_.hold(points_, nodes_.grid, quiet_substeps) || !nodes_.held.empty()))
-        hold_points();
+    take_arrangement();
     find_wave_speed();
+}
+
+void ExplicitMotion::take_arrangement() {
+    nodes_.spans = arrangement_.spans();
+    nodes_.still = arrangement_.still_nodes(points_, nodes_.grid);
 }
 
 /// Of the points as they are: ground that dilates becomes lighter, and its waves faster.

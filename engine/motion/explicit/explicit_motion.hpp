@@ -55,9 +55,7 @@ public:
 
 private:
     void arrange_points();
-    void count_quiet(Strip strip);
-    void hold_points();
-    void give_held(Strip strip, std::vector<NodeVector>& force);
+    void take_arrangement();
     void find_wave_speed();
     void stress_and_forces(Strip strip, double dt);
     template <bool keeps>
@@ -70,8 +68,6 @@ private:
     Arrangement arrangement_;
     bool yields_ = false;       // any soil
     bool is_inertial_ = false;  // likewise: whether its friction grows with the rate of shear
-    double rest_speed_ = 0;     // m/s
-    int32_t substeps_ = 0;      // since quiet ones were counted
     double wave_speed_ = 0;     // m/s, the fastest when the points were arranged
 };
 

@@ -47,6 +47,11 @@ void GridMixture<has_gas, exchanges>::resize() {
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::find_velocities(size_t node) {
+    if (is_still(node)) {
+        velocity[node] = {};
+        fluid_velocity[node] = {};
+        return;
+    }
     const NodeMomentum& solid = momentum[node];
     velocity[node] = velocity_of(solid.x, solid.y, solid.mass > 0 ? 1 / solid.mass : 0);
     const auto own_velocity = [&](const NodeMomentum& fluid) {
@@ -161,11 +166,14 @@ void GridMixture<has_gas, exchanges>::clear_sums(size_t node) {
 
 template <bool has_gas, bool exchanges>
 bool GridMixture<has_gas, exchanges>::is_at_edge(size_t node) const {
+    if (is_still(node)) return false;
     const double share = means[node].volume / cell_volume();
     if (!(share > 0) || share < full_share) return share > 0;
     if (surroundings.empty()) return false;
     const auto stride = static_cast<size_t>(grid.cells[0]);
-    const auto is_cut = [this](size_t neighbour) { return surroundings[neighbour].share < cut_share; };
+    const auto is_cut = [this](size_t neighbour) {
+        return !is_still(neighbour) && surroundings[neighbour].share < cut_share;
+    };
     return is_cut(node - 1) || is_cut(node + 1) || is_cut(node - stride) || is_cut(node + stride);
 }
 
@@ -229,8 +237,14 @@ double GridMixture<has_gas, exchanges>::falls_on(size_t node, double up) const {
     return rain[column] * grid.cell_size * up / surfaces_[column].width;
 }
 
+/// Whether it rains on a column whose surface is that of held ground.
+template <bool has_gas, bool exchanges>
+bool GridMixture<has_gas, exchanges>::lies_still(size_t column) const {
+    return !still.empty() && !rain.empty() && !(surfaces_[column].width > 0);
+}
+
 /// Every column's rain falls on its nodes at the edge in proportion to the edge's horizontal width there. What one of them cannot take, or
-/// gives back, is offered to the others. What none takes leaves: within the column's own rain it is run-off, the rest seepage.
+/// gives back, is offered to the others. What none takes leaves: within the column's own rain it is run-off, the rest seepage. Held ground takes none.
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::cross_surface(double dt) {
     const auto columns = static_cast<size_t>(grid.cells[0]);
@@ -252,7 +266,9 @@ void GridMixture<has_gas, exchanges>::cross_surface(double dt) {
         const double taken = std::min(falls_on(node, up), capacity[node]);
         returned[node] += (capacity[node] - taken) * std::min(surface.left / surface.room, 1.0);
     }
-    for (const OpenSurface& surface : surfaces_) {
+    for (size_t column = 0; column < columns; ++column) {
+        OpenSurface& surface = surfaces_[column];
+        if (lies_still(column)) surface.fallen = surface.left = rain[column] * grid.cell_size;
         const double leaves = std::max(surface.left - surface.room, 0.0), runs_off = std::min(leaves, surface.fallen);
         rained += dt * surface.fallen;
         run_off += dt * runs_off;
@@ -353,7 +369,7 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
     capacity[node] = 0;
     evening[node] = {};
     if constexpr (has_gas) gas.returned[node] = 0;
-    if (!(mass > 0) || !(mean.volume > 0)) return;
+    if (!(mass > 0) || !(mean.volume > 0) || is_still(node)) return;
     const double push = mean.push / mass;
     const double liquid_content = liquid_mass / (liquid_density * mean.volume);
     const auto drag_of = [&](double lambda) { return dt * liquid_content / (lambda * liquid_density); };

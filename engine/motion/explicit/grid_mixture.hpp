@@ -247,6 +247,7 @@ private:
     void solve_inner_nodes(size_t number, double dt, PartSums& part);
     void find_surface();
     [[nodiscard]] double falls_on(size_t node, double up) const;
+    [[nodiscard]] bool lies_still(size_t column) const;
     void cross_surface(double dt);
     [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
     void solve(size_t node, double dt, PartSums& part);
