@@ -67,6 +67,7 @@ EventKind event_kind(HappeningKind kind) {
         case HappeningKind::motion_started: return EventKind::motion_started;
         case HappeningKind::came_to_rest: return EventKind::came_to_rest;
         case HappeningKind::settled: return EventKind::settled;
+        case HappeningKind::left_background: return EventKind::left_background;
         case HappeningKind::rain_ended: return EventKind::rain_ended;
     }
     return EventKind::rain_ended;
@@ -91,6 +92,11 @@ std::string event_message(const Happening& happening) {
                                    ? "the ground that rests is in equilibrium"
                                    : "the ground rests, but no equilibrium was found: its skeleton stands") +
                    when + "; water moves in it again";
+        case HappeningKind::left_background:
+            return "ground came to an end of the background" + when + where +
+                   (happening.value > 0
+                        ? ": " + value_text(happening.value) + " m3 per metre of thickness were taken out"
+                        : std::string());
         case HappeningKind::rain_ended: return "the rain series ended" + when + "; its last rate is held";
     }
     return {};

@@ -67,6 +67,7 @@ enum class EventKind : int32_t {
     motion_started = 7,       ///< the ground that failed moves by its momentum
     came_to_rest = 8,         ///< the ground that moved rests
     settled = 9,              ///< it lies on a mesh again; value 1: in equilibrium, 0: none found, its skeleton stands
+    left_background = 10,     ///< moving ground came to an end of its background; value: what was taken out there, m3
 };
 
 struct Event {

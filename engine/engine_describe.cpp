@@ -92,8 +92,7 @@ std::string Engine::State::describe() const {
     json["left_out"] = left_out(s);
     json["nodes"] = dynamic == nullptr ? mesh.node_count() : 0;
     json["cells"] = dynamic == nullptr ? mesh.cell_count() : 0;
-    json["points"] =
-        dynamic == nullptr ? static_cast<size_t>(simulation->state().points.count) : dynamic->points().count;
+    json["points"] = dynamic == nullptr ? static_cast<size_t>(simulation->state().points.count) : dynamic->numbers();
     if (dynamic != nullptr) {
         json["cell_size"] = dynamic->cell_size();
         json["bytes_a_point"] = dynamic->points().bytes_a_point();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace talus {
 namespace {
@@ -65,9 +66,12 @@ const PointEntry& find_entry(std::string_view name, const DynamicGround& ground)
     return *found;
 }
 
+constexpr double none = std::numeric_limits<double>::quiet_NaN();  // what a point has that was taken out of the ground
+
 /// Values of some fields of the points, side by side, by number.
-std::vector<double> by_number(const FreePoints& points, std::initializer_list<PointField> names) {
-    std::vector<double> values(points.count * names.size());
+std::vector<double> by_number(const DynamicGround& ground, std::initializer_list<PointField> names) {
+    const FreePoints& points = ground.points();
+    std::vector<double> values(ground.numbers() * names.size(), none);
     size_t k = 0;
     for (const PointField name : names) {
         for (size_t p = 0; p < points.count; ++p)
@@ -79,14 +83,15 @@ std::vector<double> by_number(const FreePoints& points, std::initializer_list<Po
 
 /// value(point) of every point, by number.
 template <class Value>
-std::vector<double> each_by_number(const FreePoints& points, const Value& value) {
-    std::vector<double> values(points.count);
+std::vector<double> each_by_number(const DynamicGround& ground, const Value& value, double of_others = none) {
+    const FreePoints& points = ground.points();
+    std::vector<double> values(ground.numbers(), of_others);
     for (size_t p = 0; p < points.count; ++p) values[static_cast<size_t>(points.number[p])] = value(p);
     return values;
 }
 
 std::vector<double> stresses(const DynamicGround& ground, bool is_total) {
-    std::vector<double> values = by_number(ground.points(), {stress_xx, stress_yy, stress_zz, stress_xy});
+    std::vector<double> values = by_number(ground, {stress_xx, stress_yy, stress_zz, stress_xy});
     if (!ground.has_water()) return values;  // net and total stress are the same
     for (size_t p = 0; p < ground.points().count; ++p) {
         const double pore_stress = ground.pore_stress(p);
@@ -100,7 +105,7 @@ std::vector<double> stresses(const DynamicGround& ground, bool is_total) {
 /// Relative to the solid: n S (v_l - v_s).
 std::vector<double> darcy_flux(const DynamicGround& ground) {
     const FreePoints& points = ground.points();
-    std::vector<double> values(2 * points.count);
+    std::vector<double> values(2 * ground.numbers(), none);
     for (size_t p = 0; p < points.count; ++p) {
         const double content = ground.porosity(p) * ground.saturation(p);
         double* flux = &values[2 * static_cast<size_t>(points.number[p])];
@@ -111,32 +116,34 @@ std::vector<double> darcy_flux(const DynamicGround& ground) {
 }
 
 std::vector<double> derive_water(std::string_view name, const DynamicGround& ground) {
-    const FreePoints& points = ground.points();
     if (name == "darcy_flux") return darcy_flux(ground);
-    if (name == "porosity") return each_by_number(points, [&](size_t p) { return ground.porosity(p); });
-    if (name == "saturation") return each_by_number(points, [&](size_t p) { return ground.saturation(p); });
-    if (name == "gas_pressure") return each_by_number(points, [&](size_t p) { return ground.gas_pressure(p); });
+    if (name == "porosity") return each_by_number(ground, [&](size_t p) { return ground.porosity(p); });
+    if (name == "saturation") return each_by_number(ground, [&](size_t p) { return ground.saturation(p); });
+    if (name == "gas_pressure") return each_by_number(ground, [&](size_t p) { return ground.gas_pressure(p); });
     if (name == "relative_humidity")
-        return each_by_number(points, [&](size_t p) { return ground.relative_humidity(p); });
-    if (name == "dissolved_air") return each_by_number(points, [&](size_t p) { return ground.dissolved_air(p); });
+        return each_by_number(ground, [&](size_t p) { return ground.relative_humidity(p); });
+    if (name == "dissolved_air") return each_by_number(ground, [&](size_t p) { return ground.dissolved_air(p); });
     if (name == "suction") {
-        return each_by_number(points,
+        return each_by_number(ground,
                               [&](size_t p) { return std::max(ground.gas_pressure(p) - ground.pressure(p), 0.0); });
     }
     if (name == "water_content")
-        return each_by_number(points, [&](size_t p) { return ground.porosity(p) * ground.saturation(p); });
-    return each_by_number(points, [&](size_t p) { return ground.pressure(p); });
+        return each_by_number(ground, [&](size_t p) { return ground.porosity(p) * ground.saturation(p); });
+    return each_by_number(ground, [&](size_t p) { return ground.pressure(p); });
 }
 
 std::vector<double> derive(std::string_view name, const DynamicGround& ground) {
-    const FreePoints& points = ground.points();
-    if (name == "point_position") return by_number(points, {position_x, position_y});
-    if (name == "point_volume") return by_number(points, {point_volume});
-    if (name == "velocity") return by_number(points, {velocity_x, velocity_y});
-    if (name == "plastic_strain") return by_number(points, {plastic_shear_strain});
-    if (name == "mobilised_strength") return ground.mobilised_strength();
+    const double* volume = ground.points()[point_volume];
+    if (name == "point_position") return ground.positions();
+    if (name == "point_volume")
+        return each_by_number(
+            ground, [&](size_t p) { return volume[p]; }, 0.0);
+    if (name == "velocity") return by_number(ground, {velocity_x, velocity_y});
+    if (name == "plastic_strain") return by_number(ground, {plastic_shear_strain});
+    if (name == "mobilised_strength")
+        return each_by_number(ground, [&](size_t p) { return ground.mobilised_strength(p); });
     if (name == "displacement") {
-        std::vector<double> values = by_number(points, {position_x, position_y});
+        std::vector<double> values = ground.positions();
         for (size_t i = 0; i < values.size(); ++i) values[i] -= ground.start_position()[i];
         return values;
     }
@@ -194,7 +201,7 @@ FieldView Engine::State::view_points(std::string_view field) const {
     view.standard_name = entry.standard_name;
     view.location = Location::point;
     view.components = entry.components;
-    view.count = static_cast<int64_t>(simulation->dynamic()->points().count);
+    view.count = static_cast<int64_t>(simulation->dynamic()->numbers());
     if (field == "point_soil") {
         view.type = DataType::int32;
         view.data = point_soil.data();
@@ -208,10 +215,8 @@ FieldView Engine::State::view_points(std::string_view field) const {
 
 int32_t Engine::State::nearest_point(double x, double y) const {
     if (!nearest) {
-        const FieldView position = view_points("point_position");
-        nearest = std::make_unique<NearestPlace>(
-            std::span(static_cast<const double*>(position.data), static_cast<size_t>(2 * position.count)),
-            simulation->dynamic()->cell_size());
+        nearest =
+            std::make_unique<NearestPlace>(simulation->dynamic()->positions(), simulation->dynamic()->cell_size());
     }
     return nearest->find(x, y);
 }

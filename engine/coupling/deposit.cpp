@@ -16,7 +16,7 @@ namespace {
 
 // --- the surface -----------------------------------------------------------------------------------------------------
 
-/// The sides between which the ground lies: walls, or as far as it has come, m.
+/// The sides between which the ground lies: walls that it has not left, or as far as it has come, m.
 std::array<double, 2> find_sides(const DynamicGround& ground) {
     const FreePoints& points = ground.points();
     std::array<double, 2> sides{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -25,8 +25,11 @@ std::array<double, 2> find_sides(const DynamicGround& ground) {
         sides[0] = std::min(sides[0], points[position_x][p] - half);
         sides[1] = std::max(sides[1], points[position_x][p] + half);
     }
-    if (ground.walls().left.kind != WallKind::none) sides[0] = ground.walls().left.place;
-    if (ground.walls().right.kind != WallKind::none) sides[1] = ground.walls().right.place;
+    const auto lies_at = [&](const Wall& wall, double side) {
+        return wall.mirrors() || (wall.kind == WallKind::friction && std::abs(side - wall.place) < ground.cell_size());
+    };
+    if (lies_at(ground.walls().left, sides[0])) sides[0] = ground.walls().left.place;
+    if (lies_at(ground.walls().right, sides[1])) sides[1] = ground.walls().right.place;
     return sides;
 }
 
@@ -230,6 +233,7 @@ double node_pressure(const HydraulicTable& table, const Retention& retention, do
 }  // namespace
 
 std::optional<Deposit> find_deposit(const Scene& scene, const DynamicGround& ground) {
+    if (ground.points().count == 0) return {};
     const std::array<double, 2> sides = find_sides(ground);
     const std::vector<Place> terrain = find_terrain(ground, sides);
     const double base = ground.walls().base.place;

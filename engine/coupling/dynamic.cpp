@@ -1,8 +1,8 @@
 #include "coupling/dynamic.hpp"
 
 #include "background/locate.hpp"
+#include "coupling/background.hpp"
 #include "error.hpp"
-#include "ground/sides.hpp"
 #include "materials/hydraulic/curves.hpp"
 #include "points/quadrature.hpp"
 #include "points/seeding.hpp"
@@ -50,65 +50,6 @@ std::vector<ExplicitSoil> explicit_soils(const Scene& scene) {
     std::vector<ExplicitSoil> soils;
     for (const Soil& soil : scene.soils) soils.push_back(explicit_soil(soil));
     return soils;
-}
-
-/// The least coordinate of the ground along an axis, m.
-double least_place(const Mesh& mesh, size_t axis) {
-    double least = mesh.position[axis];
-    for (size_t i = axis; i < mesh.position.size(); i += 2) least = std::min(least, mesh.position[i]);
-    return least;
-}
-
-/// Where a side is a straight line across an axis; throws where it is none.
-double place_of_side(const Mesh& mesh, int32_t side, size_t axis, const std::string& path) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Facet& facet : mesh.facets) {
-        if (facet.side != side) continue;
-        for (const int32_t node : {facet.node_a, facet.node_b}) {
-            low = std::min(low, mesh.position[2 * static_cast<size_t>(node) + axis]);
-            high = std::max(high, mesh.position[2 * static_cast<size_t>(node) + axis]);
-        }
-    }
-    const double rounding = 1e-9 * (std::abs(low) + std::abs(high));
-    if (high - low <= rounding) return low;
-    throw Error(Status::invalid_scene, path + ": the side is not a straight line along an axis, from " +
-                                           value_text(low) + " to " + value_text(high) +
-                                           " m; that is not supported yet in a dynamic ground");
-}
-
-WallKind wall_kind(MotionCondition motion) {
-    switch (motion) {
-        case MotionCondition::roller: return WallKind::roller;
-        case MotionCondition::fixed: return WallKind::fixed;
-        case MotionCondition::friction: return WallKind::friction;
-        default: return WallKind::none;
-    }
-}
-
-Wall find_wall(const Scene& scene, const Mesh& mesh, SideNumber side) {
-    const size_t axis = side == side_base ? 1 : 0;
-    Wall wall{WallKind::none, least_place(mesh, axis), 0};
-    for (size_t b = 0; b < scene.boundaries.size(); ++b) {
-        const Boundary& boundary = scene.boundaries[b];
-        if (!boundary.has_motion || boundary.side != mesh.sides[side]) continue;
-        wall.kind = wall_kind(boundary.motion);
-        if (wall.kind == WallKind::none) continue;
-        wall.place = place_of_side(mesh, side, axis, item_path("boundaries", b) + ".motion");
-        if (wall.kind == WallKind::friction) wall.friction = tan_degrees(boundary.friction_angle);
-    }
-    return wall;
-}
-
-Walls find_walls(const Scene& scene, const Mesh& mesh) {
-    return {find_wall(scene, mesh, side_left), find_wall(scene, mesh, side_right), find_wall(scene, mesh, side_base)};
-}
-
-/// At most the scene's, and such that two upright walls lie a whole number of cells apart.
-double find_cell_size(const Scene& scene, const Walls& walls) {
-    const double wanted = scene.dynamics.cell_size;
-    if (walls.left.kind == WallKind::none || walls.right.kind == WallKind::none) return wanted;
-    const double width = walls.right.place - walls.left.place;
-    return width / std::max(1.0, std::ceil(width / wanted * (1 - 1e-12)));
 }
 
 // --- the points ------------------------------------------------------------------------------------------------------
@@ -250,17 +191,6 @@ double held(const FreePoints& points, PointField mass, PointField due) {
     return sum;
 }
 
-/// x, y of each point, by its number, m.
-std::vector<double> positions(const FreePoints& points) {
-    std::vector<double> position(2 * points.count);
-    for (size_t p = 0; p < points.count; ++p) {
-        const auto number = static_cast<size_t>(points.number[p]);
-        position[2 * number] = points[position_x][p];
-        position[2 * number + 1] = points[position_y][p];
-    }
-    return position;
-}
-
 double largest_speed(const FreePoints& points) {
     double largest = 0;
     for (size_t p = 0; p < points.count; ++p)
@@ -341,8 +271,7 @@ void subtract_displacement(const Mesh& mesh, std::span<const double> displacemen
 
 DynamicGround::Motion DynamicGround::make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points,
                                                  const Handover& handover, int32_t threads) {
-    const Walls walls = find_walls(scene, mesh);
-    const double cell_size = find_cell_size(scene, walls);
+    const auto [cell_size, walls] = make_background(scene, mesh);
     const Locator locator(mesh);
     SeededPoints seeded = make_free_points(scene, mesh, mesh_points, locator, walls, cell_size);
     if (!handover.soil_mass.empty()) keep_mass(handover.soil_mass, seeded.points);
@@ -386,11 +315,13 @@ DynamicGround::DynamicGround(const Scene& scene, const Mesh& mesh, const Points&
     : soils_(explicit_soils(scene)),
       motion_(make_motion(scene, mesh, mesh_points, handover, threads)),
       water_density_(scene.water.density),
-      may_rest_(scene.physics.regime == MotionRegime::automatic) {
+      may_rest_(scene.physics.regime == MotionRegime::automatic),
+      dynamics_(scene.dynamics) {
     start_solutes_ = solutes();
     start_energy_ = std::visit([](const auto& motion) { return sum(motion.energies()); }, motion_);
     for (const Soil& soil : scene.soils) grain_density_.push_back(soil.dry_density / (1 - soil.porosity));
-    start_position_ = positions(points());
+    start_position_.resize(2 * points().count);
+    start_position_ = positions();
     window_ = window_falls * std::sqrt(cell_size() / scene.gravity);
     watch_.moved_last = handover.time;
     if (may_rest_) start_window(handover.time);
@@ -402,6 +333,13 @@ bool DynamicGround::advance(double from, double until, const RainAt& rain, const
     substeps_ = 0;
     peak_velocity_ = 0;
     rests_ = false;
+    end_reached_.reset();
+    water_exchange_ = {};
+    if (points().count == 0) {  // all were taken out
+        rests_ = may_rest_;
+        time_ = until;
+        return true;
+    }
     std::visit([](auto& motion) { motion.restart(); }, motion_);  // what follows depends on the points alone
     return std::visit(
         [&](auto& motion) {
@@ -427,11 +365,16 @@ bool DynamicGround::move(Moving& motion, double from, double until, const Cancel
         time = next;
         if (!looks) continue;
         look(motion, time);
+        look_for_ends(motion, time);
+        if (points().count == 0) time = until;
         if (cancelled((time - from) / (until - from))) return false;
         if (rests_) break;
     }
     time_ = time;
     check_numbers();
+    const WaterExchange through_surface = exchanged_water();
+    water_exchange_ = {through_surface.rain, through_surface.run_off, through_surface.seepage,
+                       water_exchange_.absorbed};
     return true;
 }
 
@@ -460,9 +403,44 @@ void DynamicGround::look(const Moving& motion, double time) {
     start_window(time);
 }
 
+/// What has come to an end of the background is told the first time, and taken out where the scene says so.
+template <class Moving>
+void DynamicGround::look_for_ends(Moving& motion, double time) {
+    const std::vector<int32_t> found = points_at_ends(dynamics_, points(), cell_size());
+    const bool absorbs = dynamics_.at_ends == EndPolicy::absorb;
+    if (found.empty() || (has_come_to_end_ && !absorbs)) return;
+    const auto first = static_cast<size_t>(found.front());
+    const Place place{points()[position_x][first], points()[position_y][first]};
+    if (!end_reached_) end_reached_ = EndReached{time, place, 0};
+    has_come_to_end_ = true;
+    if (absorbs) absorb(motion, found);
+}
+
+template <class Moving>
+void DynamicGround::absorb(Moving& motion, const std::vector<int32_t>& leaving) {
+    const FreePoints& points = motion.points();
+    std::vector<int32_t> staying;
+    auto next = leaving.begin();
+    for (size_t p = 0; p < points.count; ++p) {
+        if (next == leaving.end() || *next != static_cast<int32_t>(p)) {
+            staying.push_back(static_cast<int32_t>(p));
+            continue;
+        }
+        ++next;
+        absorbed_.number.push_back(points.number[p]);
+        absorbed_.position.insert(absorbed_.position.end(), {points[position_x][p], points[position_y][p]});
+        absorbed_.volume.push_back(points[point_volume][p]);
+        end_reached_->absorbed += points[point_volume][p];
+    }
+    const double energy_before = sum(motion.energies()), water_before = water();
+    motion.keep(staying);
+    absorbed_.energy += energy_before - sum(motion.energies());
+    water_exchange_.absorbed += water_before - water();
+}
+
 void DynamicGround::start_window(double time) {
     watch_.window_start = time;
-    watch_.window_position = positions(points());
+    watch_.window_position = positions();
 }
 
 double DynamicGround::come_in_window() const {
@@ -475,9 +453,24 @@ double DynamicGround::come_in_window() const {
     return farthest;
 }
 
-void DynamicGround::restore(const FreePoints& points, const RestWatch& watch) {
-    watch_ = watch;
-    std::visit([&](auto& motion) { motion.points() = points; }, motion_);
+void DynamicGround::restore(const MovingState& state) {
+    absorbed_ = state.absorbed;
+    watch_ = state.rest_watch;
+    has_come_to_end_ = state.has_come_to_end;
+    std::visit([&](auto& motion) { motion.points() = state.points; }, motion_);
+}
+
+std::vector<double> DynamicGround::positions() const {
+    std::vector<double> position(start_position_.size());
+    const auto put = [&](int32_t number, double x, double y) {
+        position[2 * static_cast<size_t>(number)] = x;
+        position[2 * static_cast<size_t>(number) + 1] = y;
+    };
+    const FreePoints& points = this->points();
+    for (size_t p = 0; p < points.count; ++p) put(points.number[p], points[position_x][p], points[position_y][p]);
+    for (size_t k = 0; k < absorbed_.number.size(); ++k)
+        put(absorbed_.number[k], absorbed_.position[2 * k], absorbed_.position[2 * k + 1]);
+    return position;
 }
 
 const FreePoints& DynamicGround::points() const {
@@ -563,11 +556,11 @@ double DynamicGround::lost_strength(size_t point) const {
     return share_lost(soil, points()[plastic_shear_strain][point], cell_size());
 }
 
-WaterExchange DynamicGround::water_exchange() const {
+WaterExchange DynamicGround::exchanged_water() const {
     return of_mixture([this](const auto& mixture) {
         const auto volume = [this](double mass) { return mass / water_density_; };
         return WaterExchange{volume(mixture.rained()), volume(mixture.run_off()),
-                             volume(mixture.seepage() + mixture.evaporated())};
+                             volume(mixture.seepage() + mixture.evaporated()), 0};
     });
 }
 
@@ -590,43 +583,49 @@ MotionReport DynamicGround::report() const {
     report.kinetic_energy = energies.kinetic;
     report.elastic_energy = energies.elastic;
     report.potential_energy = energies.potential;
-    report.dissipated_energy = start_energy_ - sum(energies);
+    report.dissipated_energy = start_energy_ - absorbed_.energy - sum(energies);
     report.largest_velocity = largest_speed(points);
     report.peak_velocity = std::max(peak_velocity_, report.largest_velocity);
-    double advance = 0;  // m3 m: of the sliding volume along x
-    std::vector<size_t> sliding;
-    for (size_t p = 0; p < points.count; ++p) {
-        const double* start = &start_position_[2 * static_cast<size_t>(points.number[p])];
-        const double along = points[position_x][p] - start[0];
-        const double displacement = std::hypot(along, points[position_y][p] - start[1]);
-        report.largest_displacement = std::max(report.largest_displacement, displacement);
-        if (displacement <= cell_size()) continue;
-        sliding.push_back(p);
-        report.sliding_volume += points[point_volume][p];
-        advance += points[point_volume][p] * along;
-    }
-    if (sliding.empty()) return report;
-    const double forwards = advance < 0 ? -1 : 1;
-    double front = -std::numeric_limits<double>::infinity(), start_front = front;
-    for (const size_t p : sliding) {
-        front = std::max(front, forwards * points[position_x][p]);
-        start_front = std::max(start_front, forwards * start_position_[2 * static_cast<size_t>(points.number[p])]);
-    }
-    report.front_x = forwards * front;
-    report.run_out = front - start_front;
+    std::vector<double> volume(numbers(), 0.0);
+    for (size_t p = 0; p < points.count; ++p) volume[static_cast<size_t>(points.number[p])] = points[point_volume][p];
+    for (size_t k = 0; k < absorbed_.number.size(); ++k)
+        volume[static_cast<size_t>(absorbed_.number[k])] = absorbed_.volume[k];
+    report_slide(positions(), volume, report);
     return report;
 }
 
-std::vector<double> DynamicGround::mobilised_strength() const {
-    const FreePoints& points = this->points();
-    std::vector<double> mobilised(points.count, 0.0);
-    for (size_t p = 0; p < points.count; ++p) {
-        if (!soils_[static_cast<size_t>(points.soil[p])].yields) continue;
-        const MohrCoulomb material = std::visit([p](const auto& motion) { return motion.strength(p); }, motion_);
-        mobilised[static_cast<size_t>(points.number[p])] = talus::mobilised_strength(
-            material, {points[stress_xx][p], points[stress_yy][p], points[stress_zz][p], points[stress_xy][p]});
+/// Of all points that there ever were, by their numbers; one that was taken out slides as far as the end.
+void DynamicGround::report_slide(const std::vector<double>& position, const std::vector<double>& volume,
+                                 MotionReport& report) const {
+    double advance = 0;  // m3 m: of the sliding volume along x
+    std::vector<size_t> sliding;
+    for (size_t number = 0; number < volume.size(); ++number) {
+        const double* start = &start_position_[2 * number];
+        const double along = position[2 * number] - start[0];
+        const double displacement = std::hypot(along, position[2 * number + 1] - start[1]);
+        report.largest_displacement = std::max(report.largest_displacement, displacement);
+        if (displacement <= cell_size()) continue;
+        sliding.push_back(number);
+        report.sliding_volume += volume[number];
+        advance += volume[number] * along;
     }
-    return mobilised;
+    if (sliding.empty()) return;
+    const double forwards = advance < 0 ? -1 : 1;
+    double front = -std::numeric_limits<double>::infinity(), start_front = front;
+    for (const size_t number : sliding) {
+        front = std::max(front, forwards * position[2 * number]);
+        start_front = std::max(start_front, forwards * start_position_[2 * number]);
+    }
+    report.front_x = forwards * front;
+    report.run_out = front - start_front;
+}
+
+double DynamicGround::mobilised_strength(size_t point) const {
+    const FreePoints& points = this->points();
+    if (!soils_[static_cast<size_t>(points.soil[point])].yields) return 0;
+    const MohrCoulomb material = std::visit([point](const auto& motion) { return motion.strength(point); }, motion_);
+    return talus::mobilised_strength(material, {points[stress_xx][point], points[stress_yy][point],
+                                                points[stress_zz][point], points[stress_xy][point]});
 }
 
 }  // namespace talus

@@ -6,6 +6,7 @@
 #include "points/points.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace talus {
@@ -28,14 +29,29 @@ struct RestWatch {
     std::vector<double> window_position;  ///< of the points then, by their numbers, x, y, m
 };
 
+/// Points that were taken out at an end of the background.
+struct AbsorbedPoints {
+    std::vector<int32_t> number;
+    std::vector<double> position;  ///< where they left, x, y, m
+    std::vector<double> volume;    ///< m3 per metre of thickness
+    double energy = 0;             ///< that they took along, J
+};
+
+/// What changes while ground moves.
+struct MovingState {
+    FreePoints points;
+    AbsorbedPoints absorbed;
+    RestWatch rest_watch;
+    bool has_come_to_end = false;  ///< of the background
+};
+
 struct GroundState {
     double time = 0;                        ///< s
     std::vector<double> node_position;      ///< nodes x dimension, m
     std::vector<double> displacement;       ///< nodes x dimension, m; empty: rigid
     std::vector<double> velocity;           ///< nodes x dimension, m/s, mean over the last step; empty: rigid
     Points points;                          ///< empty: dynamic
-    FreePoints moving;                      ///< of a dynamic ground, in a state that was saved
-    RestWatch rest_watch;                   ///< likewise
+    std::optional<MovingState> moving;      ///< of a dynamic ground, in a state that was saved
     FlowState flow;                         ///< empty: dry
     std::vector<double> pore_volume;        ///< per portion, m3: what the ground has
     std::vector<double> flow_pore_volume;   ///< per portion, m3: what the flow last took for it

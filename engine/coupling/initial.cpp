@@ -1,4 +1,5 @@
 // The ground and its state before anything happens.
+#include "coupling/background.hpp"
 #include "coupling/simulation.hpp"
 #include "error.hpp"
 #include "ground/build.hpp"
@@ -47,6 +48,7 @@ Simulation::Simulation(const Scene& scene, double tolerance, int32_t threads, bo
       stop_at_motion_(stop_at_motion),
       mesh_(build_mesh(scene)),
       reference_mesh_(mesh_) {
+    if (scene.physics.regime != MotionRegime::quasi_static) check_between_ends(scene.dynamics, mesh_);
     state_.points = make_points(mesh_);
     state_.node_position = mesh_.position;
     initial_volume_ = state_.points.volume;

@@ -104,7 +104,10 @@ bool Simulation::advance_dynamically(double until, const Cancelled& cancelled) {
         state_.flow.totals[rain_total] += water.rain;
         state_.flow.totals[run_off_total] += water.run_off;
         state_.flow.totals[seepage_total] += water.seepage;
+        state_.flow.totals[drained_total] += water.absorbed;
         state_.time = dynamic_->time();
+        if (const std::optional<EndReached>& end = dynamic_->end_reached())
+            happenings.push_back({HappeningKind::left_background, end->time, end->place, end->absorbed});
         if (dynamic_->rests()) {
             state_.rests = true;
             const MotionReport report = dynamic_->report();
@@ -163,16 +166,15 @@ void Simulation::note_rain_end() {
 GroundState Simulation::save() const {
     GroundState state = state_;
     if (!dynamic_) return state;
-    state.moving = dynamic_->points();
-    state.rest_watch = dynamic_->rest_watch();
+    state.moving = dynamic_->save();
     return state;
 }
 
 void Simulation::restore(const GroundState& state) {
     state_ = state;
-    if (state.moving.count > 0) {
-        dynamic_->restore(state.moving, state.rest_watch);
-        state_.moving = {};
+    if (state.moving) {
+        dynamic_->restore(*state.moving);
+        state_.moving.reset();
         return;
     }
     dynamic_.reset();  // the motion began in the step that is undone

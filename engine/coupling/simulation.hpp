@@ -40,6 +40,7 @@ enum class HappeningKind {
     motion_started,
     came_to_rest,
     settled,
+    left_background,
     rain_ended
 };
 
@@ -49,7 +50,7 @@ struct Happening {
     double time;  ///< s
     Place place;  ///< m
     /// Of loss_of_equilibrium: largest displacement of the moving mass while it was watched, m. Of came_to_rest: volume that moved by more than a cell, m3.
-    /// Of settled: 1 in equilibrium, 0 where none was found.
+    /// Of settled: 1 in equilibrium, 0 where none was found. Of left_background: volume taken out, m3.
     double value;
 };
 

@@ -39,6 +39,7 @@ void FreePoints::arrange(const std::vector<int32_t>& order) {
     arrange_field(soil, old_numbers_, order);
     arrange_field(number, old_numbers_, order);
     arrange_field(quiet, old_numbers_, order);
+    count = order.size();
 }
 
 }  // namespace talus

@@ -71,7 +71,7 @@ struct FreePoints {
     /// Bytes that one point holds.
     [[nodiscard]] size_t bytes_a_point() const;
 
-    /// Puts the points into the given order: the one now at order[k] comes to k.
+    /// Puts the points into the given order, the one now at order[k] to k; one that it leaves out is none any more.
     void arrange(const std::vector<int32_t>& order);
 
 private:

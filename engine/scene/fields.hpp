@@ -212,6 +212,11 @@ void fields(auto& visit, Is<Numerics> auto& numerics) { visit("tolerance", numer
 void fields(auto& visit, Is<Dynamics> auto& dynamics) {
     visit.positive("cellSize", dynamics.cell_size);
     visit.positive("restSpeed", dynamics.rest_speed);
+    visit("xFrom", dynamics.x_from);
+    visit("xTo", dynamics.x_to);
+    visit("yFrom", dynamics.y_from);
+    visit("yTo", dynamics.y_to);
+    visit("atEnds", dynamics.at_ends);
 }
 
 void fields(auto& visit, Is<Schedule> auto& schedule) {

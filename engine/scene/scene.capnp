@@ -550,6 +550,26 @@ struct Dynamics {
   # What has been slower than this for 1000 substeps, solid and water, with all that lies up to 8 cells away, is held, as it lies and with its
   # stress and water, until something near it moves faster; it takes next to no time, and rain on it runs off. Ground that is still gaining speed may
   # be held for good if this is too large. Not where gas moves. Left out: nothing is held.
+  xFrom @2 :Float64 = -inf $limits(unit = "m");
+  # Ends of the background, between which the ground must lie at the start: what becomes of ground that comes to one says `atEnds`. Not on a side
+  # that is a wall. Left out: the background has no end there.
+  xTo @3 :Float64 = inf $limits(unit = "m");
+  # See xFrom.
+  yFrom @4 :Float64 = -inf $limits(unit = "m");
+  # See xFrom.
+  yTo @5 :Float64 = inf $limits(unit = "m");
+  # See xFrom.
+  atEnds @6 :EndPolicy = extend;
+  # What happens there. In every case it is an event.
+}
+
+enum EndPolicy {
+  extend @0;
+  # The background grows with the ground: it goes on.
+  absorb @1;
+  # Material points that pass an end are taken out, with their mass and their water, which counts as drained.
+  stop @2;
+  # A smooth wall, which the ground may leave again. At `yTo` up to a cell beyond it, so that it lies a whole number of cells above the base.
 }
 
 struct Schedule {

@@ -184,10 +184,18 @@ struct Numerics {
         1e-3;  ///< error allowed in saturation per unit of its range, and in pressure relative to the scene's own
 };
 
+/// What happens to ground that comes to an end of the background: it goes on, is taken out, or a wall stops it.
+enum class EndPolicy { extend, absorb, stop };
+
 /// Of a dynamic ground.
 struct Dynamics {
-    double cell_size = 0;   ///< m
-    double rest_speed = 0;  ///< m/s; 0: nothing is held
+    double cell_size = 0;                                      ///< m
+    double rest_speed = 0;                                     ///< m/s; 0: nothing is held
+    double x_from = -std::numeric_limits<double>::infinity();  ///< ends of the background, m
+    double x_to = std::numeric_limits<double>::infinity();
+    double y_from = -std::numeric_limits<double>::infinity();
+    double y_to = std::numeric_limits<double>::infinity();
+    EndPolicy at_ends = EndPolicy::extend;
 };
 
 /// What a host that only follows the scene (the runner) does.

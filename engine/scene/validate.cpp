@@ -28,6 +28,30 @@ void check_moving_water(const Check& check, const Scene& scene) {
                  "= " + value_text(scene.surface.ponding_depth) + " m:" + dynamic + "; must be 0");
 }
 
+/// The ends of a dynamic ground's background, each on a side without a wall.
+void check_ends(const Check& check, const Scene& scene) {
+    const Dynamics& dynamics = scene.dynamics;
+    const bool moves = scene.physics.regime != MotionRegime::quasi_static;
+    const auto is_wall = [&](const std::string& side) {
+        return std::any_of(scene.boundaries.begin(), scene.boundaries.end(), [&](const Boundary& boundary) {
+            return boundary.side == side && boundary.has_motion && boundary.motion != MotionCondition::free;
+        });
+    };
+    bool has_end = false;
+    const auto check_end = [&](const std::string& name, double end, const std::string& side) {
+        has_end = has_end || std::isfinite(end);
+        check.at(name).unused(!moves && std::isfinite(end), "a ground whose regime is not dynamic");
+        check.at(name).unused(std::isfinite(end) && is_wall(side), "a ground whose side '" + side + "' is a wall");
+    };
+    check_end("xFrom", dynamics.x_from, "left");
+    check_end("xTo", dynamics.x_to, "right");
+    check_end("yFrom", dynamics.y_from, "base");
+    check_end("yTo", dynamics.y_to, "surface");
+    const std::string policy = name_of<schema::EndPolicy>(dynamics.at_ends);
+    check.at("atEnds").require(dynamics.at_ends == EndPolicy::extend || has_end,
+                               "= " + policy + ": has no effect: the background has no end (xFrom, xTo, yFrom, yTo)");
+}
+
 /// What a dynamic ground cannot do yet.
 void check_regime(const Check& check, const Scene& scene) {
     const Check cell_size = check.at("dynamics").at("cellSize"), rest_speed = check.at("dynamics").at("restSpeed");
@@ -75,6 +99,7 @@ void check_physics(const Check& check, const Scene& scene) {
         !(physics.water && scene.gravity == 0),
         "= 0 m/s2: must be above 0 where there is water, whose weight defines the conductivity");
     check_regime(check, scene);
+    check_ends(check.at("dynamics"), scene);
     const bool may_move = physics.water && physics.regime != MotionRegime::quasi_static;
     check.at("physics").at("gas").require(!physics.gas || may_move,
                                           "= true: needs water and a regime that is not quasiStatic");

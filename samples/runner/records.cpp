@@ -58,7 +58,7 @@ namespace {
 Json event_json(const talus_event& event) {
     static constexpr std::array kinds = {
         "",           "saturated",      "ponding_started", "ponding_ended", "seepage_started", "loss_of_equilibrium",
-        "rain_ended", "motion_started", "came_to_rest", "settled"};
+        "rain_ended", "motion_started", "came_to_rest",    "settled",       "left_background"};
     const auto kind = static_cast<size_t>(event.kind);
     return {
         {"kind", kind < kinds.size() ? kinds[kind] : "unknown"},

@@ -64,9 +64,24 @@ def flight_cases():
     yield Case("dynamic/fragments", block(0.5, 4, RUBBING, 0.125, cohesion=0, friction=10, young=1e7), [["step", 0.1, 40]], bound=60)
     yield Case("dynamic/through_100_cells", block(1, 2, (("base", "friction", 2), ("left", "roller", 0)), 0.1, cohesion=0, friction=3),
                [["step", 0.1, 40]], bound=60)
+    yield from end_cases()
     yield Case("dynamic/tall", block(0.25, 10, RUBBING, 0.125, cohesion=2e3), SLIDE)
     yield Case("dynamic/one_cell_high", block(20, 0.25, RUBBING, 0.25), SLIDE)
     yield Case("dynamic/points_on_edges", block(1, 1, HELD, 0.5), SLIDE)
+
+
+def stopped(scene, **ends):
+    """By walls at the ends of its background."""
+    scene["dynamics"].update(ends, atEnds="stop")
+    return scene
+
+
+def end_cases():
+    steps = [["step", 0.1, 40]]
+    box = {"xFrom": -0.5, "xTo": 2.0, "yFrom": -1.0, "yTo": 1.55}
+    yield Case("dynamic/falls_into_a_box", stopped(block(1, 1, (), 0.1), **box), steps)
+    yield Case("dynamic/fragments_in_a_box", stopped(block(0.5, 4, RUBBING, 0.125, cohesion=0, friction=10), xTo=1.7, yTo=4.0), steps, bound=60)
+    yield Case("dynamic/wet_slide_against_an_end", stopped(wet_bank(rain=1e-3, cohesion=50, walls=RUBBING), xTo=8.3), steps)
 
 
 def water_cases():

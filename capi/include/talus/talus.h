@@ -98,6 +98,7 @@ typedef int32_t talus_status;
 #define TALUS_MOTION_STARTED 7    /* the ground that failed moves by its momentum */
 #define TALUS_CAME_TO_REST 8      /* the ground that moved rests */
 #define TALUS_SETTLED 9           /* it lies on a mesh again; value 1: in equilibrium, 0: none found, its skeleton stands */
+#define TALUS_LEFT_BACKGROUND 10  /* moving ground came to an end of its background; value: what was taken out, m3 per metre */
 
 #define TALUS_RAIN_REJECT 0       /* what to do with a NaN or negative rate: an error, */
 #define TALUS_RAIN_HOLD 1         /* the last good rate before it, counted in the step report, */

@@ -43,6 +43,7 @@ bool Arrangement::arrange(FreePoints& points, Grid& grid) {
     std::vector<int32_t> order(points.count);
     for (size_t p = 0; p < points.count; ++p) order[start[key[p]]++] = static_cast<int32_t>(p);
     points.arrange(order);
+    if (held_.size() != points.count) held_.clear();  // of other points: hold() is to follow
     if (!held_.empty()) {
         std::vector<uint8_t> held(held_.size());
         for (size_t k = 0; k < held.size(); ++k) held[k] = held_[static_cast<size_t>(order[k])];

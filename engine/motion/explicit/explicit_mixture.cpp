@@ -92,6 +92,12 @@ void ExplicitMixture<filling>::restart() {
     nodes_.solutes.evaporated = 0;
 }
 
+template <Filling filling>
+void ExplicitMixture<filling>::keep(const std::vector<int32_t>& staying) {
+    points_.arrange(staying);
+    if (points_.count > 0) start_anew();
+}
+
 /// From points that hold all that there is, what is due to them included.
 template <Filling filling>
 void ExplicitMixture<filling>::start_anew() {

@@ -77,6 +77,7 @@ public:
     /// As ExplicitMotion's. The water of the ground is the points' own and what is due to them.
     bool step(double dt, bool is_last);
     void restart();  ///< as ExplicitMotion's; what rained and seeped is counted from here on
+    void keep(const std::vector<int32_t>& staying);  ///< likewise; what is due to the others is gone with them
     [[nodiscard]] double critical_step() const;
     [[nodiscard]] Energies energies() const;  ///< of all phases; elastic: the skeleton's
 

@@ -30,6 +30,11 @@ void ExplicitMotion::restart() {
     nodes_.begin_step();
 }
 
+void ExplicitMotion::keep(const std::vector<int32_t>& staying) {
+    points_.arrange(staying);
+    if (points_.count > 0) restart();
+}
+
 bool ExplicitMotion::step(double dt, bool is_last) {
     arrangement_.for_each_strip([&](Strip strip) { stress_and_forces(strip, dt); });
     nodes_.end_step(dt);

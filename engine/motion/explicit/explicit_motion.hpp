@@ -40,6 +40,9 @@ public:
     /// the last bit: points put back move as those that they are a copy of.
     void restart();
 
+    /// Goes on with these points alone, whose velocity must be their own.
+    void keep(const std::vector<int32_t>& staying);
+
     /// The time in which a wave crosses a cell that moves with the fastest node, times what the method bears of it, s.
     [[nodiscard]] double critical_step() const;
 
