@@ -135,9 +135,10 @@ std::vector<double> derive_water(std::string_view name, const DynamicGround& gro
 std::vector<double> derive(std::string_view name, const DynamicGround& ground) {
     const double* volume = ground.points()[point_volume];
     if (name == "point_position") return ground.positions();
-    if (name == "point_volume")
+    if (name == "point_volume") {
         return each_by_number(
             ground, [&](size_t p) { return volume[p]; }, 0.0);
+    }
     if (name == "velocity") return by_number(ground, {velocity_x, velocity_y});
     if (name == "plastic_strain") return by_number(ground, {plastic_shear_strain});
     if (name == "mobilised_strength")
