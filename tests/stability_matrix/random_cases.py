@@ -213,8 +213,20 @@ def moving_section(seed):
     return scene, [["step", float(f"{duration * draw.uniform(0.01, 0.5):.4g}"), 1] for _ in range(draw.whole(1, 5))]
 
 
-def moving_case(number):
+def lay_bedding(soils, seed):
+    """In every third scene or so; by numbers of its own, so that all else is as it was without."""
+    draw = Draw(f"bedding {seed}")
+    if draw.whole(0, 2) > 0:
+        return
+    for conductivity in (soil["hydraulics"]["conductivity"] for soil in soils if "hydraulics" in soil):
+        across = conductivity["along"] * draw.log_uniform(1e-6, 10)
+        conductivity.update(across=float(f"{min(across, 0.3):.4g}"), dip=draw.uniform(-90, 90))
+
+
+def moving_case(number, has_bedding=True):
     scene, steps = moving_section(number)
+    if has_bedding:
+        lay_bedding(scene["soils"], number)
     return Case(f"random/moving_{number}", scene, steps, may_be_refused=TOO_SOFT)
 
 
