@@ -94,7 +94,8 @@ SeededPoints make_free_points(const Scene& scene, const Mesh& mesh, const Points
 ExplicitHydraulics explicit_hydraulics(const Soil& soil, const Scene& scene) {
     ExplicitHydraulics hydraulics;
     hydraulics.grain_density = soil.dry_density / (1 - soil.porosity);
-    hydraulics.mobility = soil.hydraulics.conductivity.along / (scene.water.density * scene.gravity);
+    hydraulics.mobility = mean_conductivity(soil.hydraulics.conductivity) / (scene.water.density * scene.gravity);
+    hydraulics.anisotropy = anisotropy_of(soil.hydraulics.conductivity);
     hydraulics.gas_mobility = hydraulics.mobility / scene.gas.viscosity_ratio;
     hydraulics.residual_water =
         soil.hydraulics.retention.residual_saturation * soil.porosity * scene.water.density / soil.dry_density;

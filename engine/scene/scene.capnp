@@ -226,7 +226,7 @@ struct Conductivity {
   across @1 :Float64 = nan $limits(unit = "m/s", low = 1e-20, high = 0.3, slips = .velocitySlips);
   # Across the bedding; left out: the same as along.
   dip @2 :Float64 = 0 $limits(unit = "degrees", low = -90, high = 90);
-  # Angle of the bedding from the x axis, counter-clockwise.
+  # Angle of the bedding from the x axis, counter-clockwise; ground that moves keeps it.
   porosityDependence @3 :PorosityDependence = none;
   # How it follows the porosity as the skeleton deforms.
 }

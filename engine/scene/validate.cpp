@@ -9,25 +9,6 @@
 namespace talus {
 namespace {
 
-/// What water in a dynamic ground cannot do yet.
-void check_moving_water(const Check& check, const Scene& scene) {
-    const std::string dynamic = " is not supported yet where the regime is dynamic";
-    for (size_t i = 0; i < scene.soils.size(); ++i) {
-        const Check soil = check.at("soils", i);
-        const Conductivity& conductivity = scene.soils[i].hydraulics.conductivity;
-        soil.at("hydraulics")
-            .at("conductivity")
-            .at("across")
-            .require(
-                !(conductivity.across != conductivity.along),
-                "= " + value_text(conductivity.across) + " m/s: another conductivity than along the bedding" + dynamic);
-    }
-    check.at("surface")
-        .at("pondingDepth")
-        .require(scene.surface.ponding_depth == 0,
-                 "= " + value_text(scene.surface.ponding_depth) + " m:" + dynamic + "; must be 0");
-}
-
 /// The ends of a dynamic ground's background, each on a side without a wall.
 void check_ends(const Check& check, const Scene& scene) {
     const Dynamics& dynamics = scene.dynamics;
@@ -68,7 +49,11 @@ void check_regime(const Check& check, const Scene& scene) {
     physics.at("deforming").require(scene.physics.deforming, "= false: must be true where the regime is dynamic");
     physics.at("regime").require(scene.ground.kind != GroundKind::column,
                                  "= dynamic: must be quasiStatic in a column; a dynamic ground is a section or a mesh");
-    if (scene.physics.water) check_moving_water(check, scene);
+    check.at("surface")
+        .at("pondingDepth")
+        .require(!(scene.physics.water && scene.surface.ponding_depth != 0),
+                 "= " + value_text(scene.surface.ponding_depth) +
+                     " m: is not supported yet where the regime is dynamic; must be 0");
 }
 
 /// What of the gas only its exchange with the water needs.

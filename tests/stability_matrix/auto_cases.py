@@ -2,7 +2,7 @@
 
 from block_scenes import mesh
 from case import Case, Sweep
-from dynamic_cases import HELD, dynamic
+from dynamic_cases import HELD, bedded, dynamic
 from scenes import earth, section
 
 STORM = [["step", 600.0, 16]]
@@ -64,6 +64,7 @@ def cases():
     yield Case("auto_bank/stiff_ground", failing(young=1e9), STORM)
     yield Case("auto_bank/steep_retention", failing(alpha=2e-5, n=6.0, conductivity=1e-5), STORM)
     yield Case("auto_bank/bishop", bishop(), STORM)
+    yield Case("auto_bank/bedded", bedded(failing(), 1e-5, -30.0), STORM)
     yield Case("auto_bank/no_friction", failing(friction=1.0, cohesion=1.5e4, rain=1e-4, softening={"residualCohesion": 500, "residualFrictionAngle": 1.0, "slip": 0.01},
                                                  strength={"model": "fredlund", "suctionFrictionAngle": 20.0}), STORM)
     yield Case("auto_bank/layers", failing(bank(layers=[{"soil": "earth"}, {"soil": "rock", "top": [[0, 0.75], [12, 0.75]]}]),

@@ -102,11 +102,19 @@ def water_cases():
                why="its pores are closed")
     yield Case("dynamic/exponential", wet_bank(table=-5.0, strength={"model": "exponential", "cohesionGain": 2e4, "cohesionRate": 10.0, "frictionGain": 30.0}),
                SLIDE)
+    yield Case("dynamic/bedded", bedded(wet_bank(rain=1e-3, table=-1.0)), [["step", 0.1, 20]])
+    yield Case("dynamic/bedded_and_rubbing", bedded(wet_bank(2e9, walls=ROUGH), 1e-9, -60.0), SLIDE)
+    yield Case("dynamic/one_way", bedded(wet_bank(conductivity=0.3), 1e-20, 45.0), SLIDE)
     yield Case("dynamic/undrained", wet_bank(2e9, conductivity=1e-13, poisson=0.4999), SLIDE)
 
 
 def conducting_by_porosity(scene):
     scene["soils"][0]["hydraulics"]["conductivity"]["porosityDependence"] = "kozenyCarman"
+    return scene
+
+
+def bedded(scene, across=1e-7, dip=35.0):
+    scene["soils"][0]["hydraulics"]["conductivity"].update(across=across, dip=dip)
     return scene
 
 
@@ -138,6 +146,8 @@ def gas_cases(sweep, bank):
     yield Case(f"{sweep}/soft_water", bank(water=1e5, conductivity=0.3), SLIDE)
     yield Case(f"{sweep}/rubbing", bank(walls=ROUGH), [["step", 0.1, 20]])
     yield Case(f"{sweep}/kozeny_carman", conducting_by_porosity(bank()), SLIDE)
+    yield Case(f"{sweep}/bedded", bedded(bank(rain=1e-3, table=-1.0, walls=ROUGH)), [["step", 0.1, 20]])
+    yield Case(f"{sweep}/one_way", bedded(bank(conductivity=0.3), 1e-20, 45.0), SLIDE)
     yield Case(f"{sweep}/porous", bank(porosity=0.9), SLIDE)
     yield Case(f"{sweep}/dense", bank(porosity=0.05), SLIDE)
 

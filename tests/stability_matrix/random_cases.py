@@ -210,14 +210,29 @@ def moving_section(seed):
     elif draw.choice((True, False)):
         scene["dynamics"]["restSpeed"] = draw.log_uniform(1e-6, 1)
     duration = draw.log_uniform(*SUBSTEPS) * crossing_time(soils, water, cell_size)
-    steps = [["step", float(f"{duration * draw.uniform(0.01, 0.5):.4g}"), 1] for _ in range(draw.whole(1, 5))]
-    if is_wet and draw.choice((True, False)):
+    return scene, [["step", float(f"{duration * draw.uniform(0.01, 0.5):.4g}"), 1] for _ in range(draw.whole(1, 5))]
+
+
+def vary(scene, seed):
+    """What was not drawn at first; by numbers of its own, so that all else is as it was without."""
+    draw = Draw(f"varied {seed}")
+    wet = [soil["hydraulics"]["conductivity"] for soil in scene["soils"] if "hydraulics" in soil]
+    if draw.whole(0, 2) == 0:
+        for conductivity in wet:
+            across = conductivity["along"] * draw.log_uniform(1e-6, 10)
+            conductivity.update(across=float(f"{min(across, 0.3):.4g}"), dip=draw.uniform(-90, 90))
+    if wet and draw.choice((True, False)):
         scene["dynamics"]["restSpeed"] = draw.log_uniform(1e-6, 1)
-    return scene, steps
+    terrain = scene["ground"]["section"]["terrain"]
+    if draw.whole(0, 2) == 0 and not any(wall["side"] == "right" for wall in scene["boundaries"]):
+        width = terrain[-1][0]
+        scene["dynamics"].update(xTo=width * draw.uniform(1, 1.5), yTo=terrain[0][1] * draw.uniform(1, 2), atEnds="stop")
 
 
-def moving_case(number):
+def moving_case(number, is_varied=True):
     scene, steps = moving_section(number)
+    if is_varied:
+        vary(scene, number)
     return Case(f"random/moving_{number}", scene, steps, may_be_refused=TOO_SOFT)
 
 

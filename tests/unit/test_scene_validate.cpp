@@ -81,6 +81,9 @@ TEST_CASE("soils and forcings of the extremes are sound") {
             s.soils[0].solid.strength.friction_angle = s.soils[0].solid.dilation_angle = phi;
         });
     }
+    for (const char* moving : {"column_explicit", "column_three_phase", "slope_run_out"}) {
+        check_sound(moving, [](Scene& s) { s.soils[0].hydraulics.conductivity = {1e-4, 1e-6, -30}; });
+    }
     check_sound("slope", [](Scene& s) { s.soils[0].solid.strength.cohesion = 0; });
     check_sound("slope", [](Scene& s) { s.soils[0].solid.strength.friction_angle = 0; });
     check_sound("slope", [](Scene& s) { s.soils[0].solid.tensile_strength = 0; });

@@ -71,6 +71,7 @@ ExplicitMixture<filling>::ExplicitMixture(double cell_size, const Walls& walls, 
         grain_volume_.push_back(1 / soil.grain_density);
         gains_exponentially_ = gains_exponentially_ || soil.strength.model == StrengthModel::exponential;
         follows_porosity_ = follows_porosity_ || soil.initial_conductance > 0;
+        nodes_.has_bedding = nodes_.has_bedding || size_of(soil.anisotropy) > 0;
     }
     nodes_.threads = arrangement_.threads();
     nodes_.grid.cell_size = cell_size;
@@ -272,6 +273,20 @@ void ExplicitMixture<filling>::follow_porosity(size_t first, size_t count, Fluid
             fluids.resistance[k] /= factor;
         }
     }
+}
+
+/// The nodes' sums of what the points' bedding makes of their conductivity: a mean of resistances where the gas is at rest, as their mobility is.
+template <Filling filling>
+void ExplicitMixture<filling>::tell_bedding(size_t first, size_t count, const SplineBlock& spline,
+                                            const FluidBlock& fluids) {
+    VelocityBlock sum;
+    for (size_t k = 0; k < count; ++k) {
+        const NodeVector& anisotropy = hydraulics_[static_cast<size_t>(points_.soil[first + k])].anisotropy;
+        const double weight = points_[solid_mass][first + k] * (has_gas ? 1.0 : fluids.resistance[k]);
+        sum.x[k] = weight * anisotropy.x;
+        sum.y[k] = weight * anisotropy.y;
+    }
+    scatter_values(nodes_.grid, count, spline, sum, nodes_.anisotropy);
 }
 
 template <Filling filling>
@@ -477,6 +492,7 @@ void ExplicitMixture<filling>::stress_and_forces(Strip strip, double dt) {
                    gift);
         scatter_gradients(nodes_.grid, count, spline, gift, &nodes_.gradients.data()->push_x);
         scatter_means(nodes_.grid, count, spline, gift, &nodes_.means.data()->push);
+        if (nodes_.has_bedding) tell_bedding(first, count, spline, fluids);
         if constexpr (filling == Filling::unsaturated) {
             scatter_moments(nodes_.grid, count, spline, volume, mass, &nodes_.moments.data()->xx,
                             &nodes_.places.data()->x);
@@ -666,7 +682,8 @@ typename ExplicitMixture<filling>::PoreStiffness ExplicitMixture<filling>::pore_
     const double filled = share_filled(p), stiffness = filled * table.stiffness(filled);
     const bool is_borne = water_.pore_stress == PoreStress::bishop;
     const double borne = is_borne ? std::clamp(table.effective(filled), 0.0, 1.0) * stiffness : 0.0;
-    const double mobility = hydraulics_[soil].mobility * conductance_factor(p) * table.at(filled).permeability;
+    const double full_mobility = hydraulics_[soil].mobility / (1 - size_of(hydraulics_[soil].anisotropy));
+    const double mobility = full_mobility * conductance_factor(p) * table.at(filled).permeability;
     const double creep = 2 * stiffness * mobility / (porosity * nodes_.grid.cell_size);
     const auto both = [](double pores, double retention) {
         return has_gas ? pores + retention : std::max(pores, retention);

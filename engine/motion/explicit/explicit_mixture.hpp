@@ -25,7 +25,7 @@ namespace talus {
 /// How a soil holds and conducts water. A retention is left out in ground that stays full.
 struct ExplicitHydraulics {
     double grain_density = 0;  ///< kg/m3
-    double mobility = 0;       ///< of the full soil, kappa / mu = K / (rho_l g), m2/(Pa s)
+    double mobility = 0;       ///< of the full soil, kappa / mu = K / (rho_l g), K as mean_conductivity(), m2/(Pa s)
     double suction_tangent =
         0;  ///< cohesion gained per suction, -, times the effective saturation where `weighs_suction`
     bool weighs_suction = false;
@@ -34,7 +34,8 @@ struct ExplicitHydraulics {
         0;  ///< that does not flow, kg per kg of solid: what fills the pores at the start to the residual saturation
     /// Kozeny's and Carman's n^3 / (1 - n)^2 at the scene's porosity, where K grows with it; 0: it does not.
     double initial_conductance = 0;
-    Strength strength{};  ///< read where it is exponential, in place of suction_tangent
+    Strength strength{};      ///< read where it is exponential, in place of suction_tangent
+    NodeVector anisotropy{};  ///< as anisotropy_of(); none: it conducts alike in all directions
 };
 
 /// What of the pore pressures the skeleton does not bear: max(p_l, p_g), or S_e p_l + (1 - S_e) p_g (physics.md).
@@ -145,6 +146,7 @@ private:
     void find_fluids(size_t first, size_t count, FluidBlock& fluids) const;
     [[nodiscard]] double conductance_factor(size_t p) const;
     void follow_porosity(size_t first, size_t count, FluidBlock& fluids) const;
+    void tell_bedding(size_t first, size_t count, const SplineBlock& spline, const FluidBlock& fluids);
     void find_strength(size_t first, size_t count, const FluidBlock& fluids, MaterialBlock& material) const;
     void find_pores(size_t first, size_t count, BlockValues& pores) const;
     void find_gas_weights(size_t first, size_t count, BlockValues& weight) const;

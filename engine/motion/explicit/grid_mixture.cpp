@@ -14,6 +14,15 @@ constexpr double cut_share =
 /// Gas is never thinner than this share of the atmosphere where a density is divided by.
 constexpr double least_density_share = 1e-6;
 
+template <class Axes>
+ImpulseAnswer answer_to_impulse(const Axes& axes, const PhaseAnswers<Axes>& answers, const NodeVector& direction) {
+    const auto coupled = of_each(answers, [](const PhaseAnswer& own) { return own.coupled; });
+    const auto liquid =
+        of_each(answers, [](const PhaseAnswer& own) { return own.liquid.drag / (1 + own.liquid.drag); });
+    const auto gas = of_each(answers, [](const PhaseAnswer& own) { return own.gas.drag / (1 + own.gas.drag); });
+    return {axes.along(coupled, direction), axes.product(liquid, direction), axes.product(gas, direction)};
+}
+
 }  // namespace
 
 void NodeGas::resize(size_t nodes) {
@@ -32,6 +41,7 @@ void GridMixture<has_gas, exchanges>::resize() {
     force.assign(nodes, {});
     gradients.assign(nodes, {});
     means.assign(nodes, {});
+    if (has_bedding) anisotropy.assign(nodes, {});
     if (evens && !has_gas) {
         moments.assign(nodes, {});
         places.assign(nodes, {});
@@ -147,6 +157,7 @@ void GridMixture<has_gas, exchanges>::clear_sums(size_t node) {
     force[node] = {};
     gradients[node] = {};
     means[node] = {};
+    if (!anisotropy.empty()) anisotropy[node] = {};
     if (!moments.empty()) {
         moments[node] = {};
         places[node] = {};
@@ -276,9 +287,16 @@ void GridMixture<has_gas, exchanges>::cross_surface(double dt) {
     }
 }
 
-/// How the gas at a node answers to forces.
 template <bool has_gas, bool exchanges>
-GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt) {
+LiquidAnswer GridMixture<has_gas, exchanges>::answer_of_liquid(size_t node, double dt, double lambda) const {
+    const double mass = liquid_momentum[node].mass, content = mass / (liquid_density * means[node].volume);
+    const double drag = dt * content / (lambda * liquid_density);
+    return {drag, mass / (1 + drag), dt * content / (1 + drag)};
+}
+
+/// How the gas at a node answers to forces along an axis of this anisotropy.
+template <bool has_gas, bool exchanges>
+GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt, double anisotropy) const {
     const double volume = means[node].volume, mass = gas.momentum[node].mass;
     const GasMeans& mean = gas.means[node];
     GasAnswer answer;
@@ -290,7 +308,7 @@ GasAnswer GridMixture<has_gas, exchanges>::answer_of_gas(size_t node, double dt)
     }
     const double density = std::max(mean.mass / mean.volume, least_density_share * gas.density);
     answer.push = mean.push / mean.volume;
-    answer.drag = dt * mean.volume / volume * momentum[node].mass / (mean.mobility * density);
+    answer.drag = dt * mean.volume / volume * momentum[node].mass * (1 - anisotropy) / (mean.mobility * density);
     answer.density = mass / mean.volume;
     answer.response = dt / mean.volume;
     answer.moved = mass / (1 + answer.drag);
@@ -345,97 +363,128 @@ size_t GridMixture<has_gas, exchanges>::into_ground(size_t node, const NodeVecto
 
 /// What flows by gravity has the permeability that it comes with, where the ground above is wetter: by the mean, which falls steeply from full soil, less
 /// would flow below a full node than comes from above. So much is added to the flow downwards, kg/(m2 s): the wetter ground's share of what of
-/// the water's velocity through the solid is gravity's, and no more than it adds to Darcy's law.
+/// the water's velocity through the solid is gravity's, and no more than it adds to Darcy's law. `lambda_down`: of a push downwards and the flow that way;
+/// `pushed_up`: a push upwards that drives as much up as the whole push does.
 template <bool has_gas, bool exchanges>
-double GridMixture<has_gas, exchanges>::falls_more(size_t node, double pushed_up, double velocity_up) const {
+double GridMixture<has_gas, exchanges>::falls_more(size_t node, double lambda_down, double pushed_up,
+                                                   double velocity_up) const {
     const size_t above = node + static_cast<size_t>(grid.cells[0]);
     const double more = surroundings[above].permeability / surroundings[node].permeability - 1;
     if (!(more > 0) || !(pushed_up < 0) || !(velocity_up < 0)) return 0;
-    const Means& mean = means[node];
-    const double weight = gravity * liquid_density * mean.volume;
+    const double volume = means[node].volume, weight = gravity * liquid_density * volume;
     const double of_gravity = std::min(weight / -pushed_up, 1.0);
     const double flow = liquid_momentum[node].mass * -velocity_up;
-    const double by_darcy = liquid_density * mean.lambda(momentum[node].mass) * -pushed_up;
-    return more * of_gravity * std::min(flow, by_darcy) / mean.volume;
+    const double by_darcy = liquid_density * lambda_down * -pushed_up;
+    return more * of_gravity * std::min(flow, by_darcy) / volume;
 }
 
 template <bool has_gas, bool exchanges>
 void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& part) {
-    const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
-    const NodeGradients& sums = gradients[node];
-    const Means& mean = means[node];
+    const double mass = momentum[node].mass;
     flux[node] = {};
     returned[node] = 0;
     capacity[node] = 0;
     evening[node] = {};
     if constexpr (has_gas) gas.returned[node] = 0;
-    if (!(mass > 0) || !(mean.volume > 0) || is_still(node)) return;
+    if (!(mass > 0) || !(means[node].volume > 0) || is_still(node)) return;
+    const NodeVector sum = anisotropy.empty() ? NodeVector{} : anisotropy[node];
+    if (sum.x == 0 && sum.y == 0) return solve(AnyAxes{}, node, dt, part);
+    const double inverse = 1 / means[node].anisotropy_weight(mass);
+    solve(BeddingAxes({inverse * sum.x, inverse * sum.y}), node, dt, part);
+}
+
+/// Along each of the axes phases answer on their own. Points even out by what flows along that which conducts least.
+template <bool has_gas, bool exchanges>
+template <class Axes>
+void GridMixture<has_gas, exchanges>::solve(const Axes& axes, size_t node, double dt, PartSums& part) {
+    const double mass = momentum[node].mass, liquid_mass = liquid_momentum[node].mass;
+    const NodeGradients& sums = gradients[node];
+    const Means& mean = means[node];
     const double push = mean.push / mass;
-    const double liquid_content = liquid_mass / (liquid_density * mean.volume);
-    const auto drag_of = [&](double lambda) { return dt * liquid_content / (lambda * liquid_density); };
-    const double drag = drag_of(mean.lambda(mass));
-    const auto conductance_of = [&](double lambda) { return dt * liquid_content / (1 + drag_of(lambda)); };
-    const double conductance = conductance_of(mean.lambda(mass));
-    const double edge_conductance = conductance_of(mean.edge_lambda(mass));
-    const double spread = conductance * mean.volume / (cell_volume() * mass);
+    const double lambda = mean.lambda(mass);
+    PhaseAnswers<Axes> answers = axes.each([&](double anisotropy) {
+        PhaseAnswer answer{answer_of_liquid(node, dt, lambda / (1 - anisotropy)), {}, 0};
+        answer.coupled = mass + answer.liquid.moved * answer.liquid.drag;
+        if constexpr (has_gas) answer.gas = answer_of_gas(node, dt, anisotropy);
+        return answer;
+    });
+    const PhaseAnswer& least = answers.back();
+    const double spread = least.liquid.conductance * mean.volume / (cell_volume() * mass);
     liquid_of(evening[node]) = {spread, spread * push};
     const double response = dt / (liquid_density * mean.volume);
-    const double evened = evens ? smoothing * conductance / mean.volume : 0.0;
-    const double moved = liquid_mass / (1 + drag);
-    double coupled = mass + moved * drag, weight = gravity * (mass + liquid_mass);
-    [[maybe_unused]] GasAnswer answer;
+    const double evened = evens ? smoothing * least.liquid.conductance / mean.volume : 0.0;
+    double weight = gravity * (mass + liquid_mass);
     if constexpr (has_gas) {
-        answer = answer_of_gas(node, dt);
-        evening[node].gas = {answer.spread, answer.spread * answer.push};
+        evening[node].gas = {least.gas.spread, least.gas.spread * least.gas.push};
         weight += gravity * gas.momentum[node].mass;
     }
     NodeVector &solid = velocity[node], &liquid = liquid_of(fluid_velocity[node]), &through = liquid_of(flux[node]);
-    const NodeVector outwards{sums.edge_x, sums.edge_y}, stress = force[node], total{stress.x, stress.y - weight};
-    const auto move = [&](double NodeVector::*c, const NodeVector& pushed, const NodeVector& gas_pushed) {
-        const double start = solid.*c, liquid_start = liquid.*c;
-        const double alone = liquid_start + response * pushed.*c;
-        double whole = mass * start + liquid_mass * liquid_start + dt * (total.*c - edge_pressure * outwards.*c);
-        [[maybe_unused]] double gas_alone = 0;
-        if constexpr (has_gas) {
-            const double gas_start = fluid_velocity[node].gas.*c;
-            gas_alone = gas_start + answer.response * gas_pushed.*c;
-            whole += gas.momentum[node].mass * gas_start - answer.moved * gas_alone;
-        }
-        solid.*c = (whole - moved * alone) / coupled;
-        liquid.*c = (alone + drag * solid.*c) / (1 + drag);
-        through.*c = liquid_mass / mean.volume * (liquid.*c - solid.*c) - evened * pushed.*c;
-        if constexpr (has_gas) {
-            const double own = (gas_alone + answer.drag * solid.*c) / (1 + answer.drag);
-            fluid_velocity[node].gas.*c = own;
-            flux[node].gas.*c = answer.density * (own - solid.*c) - answer.evened * gas_pushed.*c;
-        }
-    };
+    const NodeVector outwards{sums.edge_x, sums.edge_y}, stress = force[node];
     const auto flow = [&](const NodeVector& pushed, const NodeVector& gas_pushed, double stretch) {
         if constexpr (has_gas) {
             const NodeVector& start = fluid_velocity[node].gas;
-            answer.choke({start.x + answer.response * gas_pushed.x - solid.x,
-                          start.y + answer.response * gas_pushed.y - solid.y},
-                         0.5 * grid.cell_size / (dt * stretch));
-            coupled += answer.moved * answer.drag;
+            for (PhaseAnswer& answer : answers) {
+                answer.gas.choke({start.x + answer.gas.response * gas_pushed.x - solid.x,
+                                  start.y + answer.gas.response * gas_pushed.y - solid.y},
+                                 0.5 * grid.cell_size / (dt * stretch));
+                answer.coupled += answer.gas.moved * answer.gas.drag;
+            }
         }
-        move(&NodeVector::x, pushed, gas_pushed);
-        move(&NodeVector::y, pushed, gas_pushed);
-        if (!surroundings.empty()) through.y -= falls_more(node, pushed.y, liquid.y - solid.y);
-        if (!rubs_ || contact_at_[node] < 0) return;
-        ImpulseAnswer by_impulse{coupled, drag / (1 + drag), liquid_mass / mean.volume, push};
+        const NodeVector total =
+            axes.turned({stress.x - edge_pressure * outwards.x, stress.y - weight - edge_pressure * outwards.y});
+        const NodeVector push_along = axes.turned(pushed);
+        NodeVector solid_along = axes.turned(solid), liquid_along = axes.turned(liquid), through_along;
+        [[maybe_unused]] const NodeVector gas_push_along = axes.turned(gas_pushed);
+        [[maybe_unused]] NodeVector gas_along, gas_through_along;
+        if constexpr (has_gas) gas_along = axes.turned(fluid_velocity[node].gas);
+        const auto move = [&](double NodeVector::*c, const PhaseAnswer& answer) {
+            const auto& [drag, moved, conductance] = answer.liquid;
+            const double start = solid_along.*c, liquid_start = liquid_along.*c;
+            const double alone = liquid_start + response * push_along.*c;
+            double whole = mass * start + liquid_mass * liquid_start + dt * total.*c;
+            [[maybe_unused]] double gas_alone = 0;
+            if constexpr (has_gas) {
+                const double gas_start = gas_along.*c;
+                gas_alone = gas_start + answer.gas.response * gas_push_along.*c;
+                whole += gas.momentum[node].mass * gas_start - answer.gas.moved * gas_alone;
+            }
+            solid_along.*c = (whole - moved * alone) / answer.coupled;
+            liquid_along.*c = (alone + drag * solid_along.*c) / (1 + drag);
+            through_along.*c = liquid_mass / mean.volume * (liquid_along.*c - solid_along.*c) - evened * push_along.*c;
+            if constexpr (has_gas) {
+                gas_along.*c = (gas_alone + answer.gas.drag * solid_along.*c) / (1 + answer.gas.drag);
+                gas_through_along.*c =
+                    answer.gas.density * (gas_along.*c - solid_along.*c) - least.gas.evened * gas_push_along.*c;
+            }
+        };
+        move(&NodeVector::x, answers.front());
+        move(&NodeVector::y, answers.back());
+        solid = axes.turned_back(solid_along);
+        liquid = axes.turned_back(liquid_along);
+        through = axes.turned_back(through_along);
         if constexpr (has_gas) {
-            by_impulse.gas_follows = answer.drag / (1 + answer.drag);
-            by_impulse.gas_density = answer.density;
-            by_impulse.gas_potential = answer.push;
+            fluid_velocity[node].gas = axes.turned_back(gas_along);
+            flux[node].gas = axes.turned_back(gas_through_along);
         }
-        rub(node, dt, by_impulse);
+        if (!surroundings.empty()) {
+            const NodeVector down =
+                axes.product(axes.each([&](double anisotropy) { return lambda / (1 - anisotropy); }), {0, 1});
+            const double aside = down.x / down.y;
+            const double more = falls_more(node, down.y, pushed.y + aside * pushed.x, liquid.y - solid.y);
+            through = {through.x - aside * more, through.y - more};
+        }
+        if (!rubs_ || contact_at_[node] < 0) return;
+        rub(node, dt,
+            {answer_to_impulse(axes, answers, {1, 0}), answer_to_impulse(axes, answers, {0, 1}),
+             liquid_mass / mean.volume, push, least.gas.density, least.gas.push});
     };
     const NodeVector inner{sums.push_x - push * outwards.x, sums.push_y - push * outwards.y};
     NodeVector gas_inner{}, gas_outwards{};
     if constexpr (has_gas) {
         const NodeGradients& gas_sums = gas.gradients[node];
         gas_outwards = {gas_sums.edge_x, gas_sums.edge_y};
-        gas_inner = {gas_sums.push_x - answer.push * gas_outwards.x, gas_sums.push_y - answer.push * gas_outwards.y};
+        gas_inner = {gas_sums.push_x - least.gas.push * gas_outwards.x,
+                     gas_sums.push_y - least.gas.push * gas_outwards.y};
     }
     if (!is_at_edge(node)) {
         flow(inner, gas_inner, 1);
@@ -465,11 +514,15 @@ void GridMixture<has_gas, exchanges>::solve(size_t node, double dt, PartSums& pa
         gas.returned[node] = dot(flux[node].gas, gas_outwards);
     }
     if (!(edge.distance > 0)) return;
-    const double carried =
-        returned[node] - (conductance / mean.volume - evened) * dot(edge.stretched(pushed), outwards);
-    const double drawn = edge_conductance * edge.length * (edge_head - push) / edge.distance;
+    const auto driven =
+        of_each(answers, [&](const PhaseAnswer& answer) { return answer.liquid.conductance / mean.volume - evened; });
+    const double carried = returned[node] - axes.driven_out(driven, edge, pushed, outwards);
+    const double edge_lambda = mean.edge_lambda(mass);
+    const auto edge_conductance = axes.each(
+        [&](double anisotropy) { return answer_of_liquid(node, dt, edge_lambda / (1 - anisotropy)).conductance; });
+    const double drawn = axes.along(edge_conductance, edge.normal) * edge.length * (edge_head - push) / edge.distance;
     capacity[node] = drawn - carried;
-    if constexpr (has_gas) breathe(node, dt, edge, answer, gas_pushed, flux[node].gas, part);
+    if constexpr (has_gas) breathe(axes, node, dt, edge, answers, gas_pushed, flux[node].gas, part);
 }
 
 /// Of what the edge can take, what rain offers; all where water comes out.
@@ -493,19 +546,26 @@ double GridMixture<has_gas, exchanges>::gas_distance(size_t node, const GroundEd
 /// fills within a step, and by the start's would fill beyond the atmosphere's pressure. The gain is that from the ground, too: a steady flow through the
 /// edge changes no psi, whatever the step.
 template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer,
-                                              const NodeVector& pushed, const NodeVector& through, PartSums& part) {
-    if (!(answer.density > 0)) return;
+template <class Axes>
+void GridMixture<has_gas, exchanges>::breathe(const Axes& axes, size_t node, double dt, const GroundEdge& edge,
+                                              const PhaseAnswers<Axes>& answers, const NodeVector& pushed,
+                                              const NodeVector& through, PartSums& part) {
+    const GasAnswer& least = answers.back().gas;
+    if (!(least.density > 0)) return;
     const double volume = gas.means[node].volume, content = volume / means[node].volume;
-    const double conductance = dt * answer.moved / volume, driven = conductance / volume - answer.evened;
-    const double outer_conductance =
-        conductance * (1 + answer.drag) / (1 + answer.drag / (1 - 0.5 * wetted_share(node)));
+    const double wetted = wetted_share(node);
+    const auto driven = of_each(
+        answers, [&](const PhaseAnswer& answer) { return dt * answer.gas.moved / volume / volume - least.evened; });
+    const auto outer_conductance = of_each(answers, [&](const PhaseAnswer& answer) {
+        const double drag = answer.gas.drag;
+        return dt * answer.gas.moved / volume * (1 + drag) / (1 + drag / (1 - 0.5 * wetted));
+    });
     const NodeVector outwards{gradients[node].edge_x, gradients[node].edge_y};
-    const double carried = dot(through, outwards) - driven * dot(edge.stretched(pushed), outwards);
+    const double carried = dot(through, outwards) - axes.driven_out(driven, edge, pushed, outwards);
     const double edge_push = gravity * (height_of(node) + edge.height);
-    const double opening = outer_conductance * edge.length / gas_distance(node, edge);
+    const double opening = axes.along(outer_conductance, edge.normal) * edge.length / gas_distance(node, edge);
     const double filling = dt * content * opening * gas.specific / gas.means[node].mass;
-    const double drawn = content * (opening * (edge_push - answer.push) - carried);
+    const double drawn = content * (opening * (edge_push - least.push) - carried);
     const double inflow = (drawn - filling * gas.returned[node]) / (1 + filling);
     gas.returned[node] += inflow;
     part.escaped -= dt * inflow;

@@ -14,8 +14,11 @@
 // there drives over the distance to the middle of the ground at the node, into full pores and at most what rain offers, or out. The gas alike,
 // but with psi in place of the whole pressure and the volume V_g of the points' gas in place of V, and points get their shares of it by
 // that volume: where there is none nothing flows, and the density of little gas changes as that of much. The edge is open to it both ways.
+//
+// Where the ground conducts along its bedding otherwise than across it, lambda is a tensor, and along either of its axes all this is as above.
 #pragma once
 
+#include "motion/explicit/conduction_axes.hpp"
 #include "motion/explicit/grid_motion.hpp"
 #include "motion/explicit/ground_edge.hpp"
 #include "motion/explicit/node_solutes.hpp"
@@ -51,9 +54,10 @@ struct NodeMeans {
     double push = 0;          ///< of N m (p + rho_l g y)
     double permeability = 0;  ///< of N m k_r
     double volume = 0;        ///< of N V
-    double resistance = 0;    ///< of N m mu / kappa
+    double resistance = 0;    ///< of N m mu / kappa, the mean over all directions
 
     [[nodiscard]] double lambda(double) const { return permeability / resistance; }
+    [[nodiscard]] double anisotropy_weight(double) const { return resistance; }  ///< anisotropy is one of resistances
     [[nodiscard]] double edge_lambda(double mass) const { return mass / resistance; }  ///< of full pores
 };
 
@@ -65,6 +69,7 @@ struct NodeMeansBesideGas {
     double edge_mobility = 0;  ///< of N m lambda on the way to the edge: the mean over the suctions on it
 
     [[nodiscard]] double lambda(double mass) const { return mobility / mass; }
+    [[nodiscard]] static double anisotropy_weight(double mass) { return mass; }
     [[nodiscard]] double edge_lambda(double mass) const { return edge_mobility / mass; }
 };
 
@@ -92,7 +97,14 @@ struct NodeGas {
     void resize(size_t nodes);
 };
 
-/// How the gas at a node answers to forces on it: v_g' = (v_g + response force + drag v_s') / (1 + drag).
+/// How the liquid at a node answers to forces along an axis: v_l' = (v_l + response force + drag v_s') / (1 + drag).
+struct LiquidAnswer {
+    double drag = 0;         ///< -
+    double moved = 0;        ///< mass / (1 + drag), kg
+    double conductance = 0;  ///< flux per force and volume, kg s/m3
+};
+
+/// The same of the gas.
 struct GasAnswer {
     double push = 0;      ///< the node's mean of psi, J/kg
     double response = 0;  ///< m/s per force
@@ -104,6 +116,23 @@ struct GasAnswer {
 
     void choke(const NodeVector& relative_velocity, double most);
 };
+
+/// How all that is at a node answers along an axis.
+struct PhaseAnswer {
+    LiquidAnswer liquid;
+    GasAnswer gas;
+    double coupled = 0;  ///< mass that a force on the solid moves, kg: the fluids' that drag takes along included
+};
+template <class Axes>
+using PhaseAnswers = std::array<PhaseAnswer, Axes::count>;
+
+/// find(answer) along each of the axes.
+template <size_t count, class Find>
+std::array<double, count> of_each(const std::array<PhaseAnswer, count>& answers, const Find& find) {
+    std::array<double, count> values;
+    for (size_t axis = 0; axis < count; ++axis) values[axis] = find(answers[axis]);
+    return values;
+}
 
 /// Of a column of the grid: the edge that faces up.
 struct OpenSurface {
@@ -133,13 +162,17 @@ struct Contact {
     double pressing = 0;  ///< impulse of the skeleton on the wall in the step, N s
 };
 
-/// How a node answers to an impulse on its solid.
+/// How a node answers to an impulse that changes its solid's velocity along x or along y.
 struct ImpulseAnswer {
-    double mass = 0;            ///< that it moves, the fluids' that drag takes along included, kg
-    double liquid_follows = 0;  ///< change of the liquid's velocity per the solid's
+    double mass = 0;         ///< that it moves, the fluids' that drag takes along included, kg
+    NodeVector liquid, gas;  ///< change of their velocities per the solid's
+};
+
+struct ImpulseAnswers {
+    ImpulseAnswer x, y;
     double liquid_density = 0;  ///< flux per velocity through the solid, kg/m3
     double head = 0;            ///< p + rho_l g y, Pa
-    double gas_follows = 0, gas_density = 0;
+    double gas_density = 0;
     double gas_potential = 0;  ///< psi, J/kg
 };
 
@@ -161,6 +194,7 @@ struct GridMixture : WalledGrid {
     double speed = 0;           ///< m/s, a bound of the points' solid in the step, from its end
     double start_speed = 0;     ///< likewise, from its start
     bool evens = false;         ///< points of a cell even out what they hold
+    bool has_bedding = false;   ///< some of the ground has an anisotropy
     bool immersed = false;      ///< the edge stands in water without pressure: it may enter too
     double cell_volume() const { return grid.cell_size * grid.cell_size; }
     double height_of(size_t node) const {  ///< y, m
@@ -181,6 +215,8 @@ struct GridMixture : WalledGrid {
     std::vector<NodeVector> force;  ///< of the total stress, and of the weight what mirrors change, N
     std::vector<NodeGradients> gradients;
     std::vector<Means> means;
+    std::vector<NodeVector>
+        anisotropy;  ///< sum of N times that of the points and what Means weigh it by; empty: none has any
     std::vector<NodeMoments> moments;            ///< empty where evens is not set or gas moves, as the next two
     std::vector<NodeVector> places;              ///< sum of N m r, r from the node, kg m
     std::vector<NodeSurroundings> surroundings;  ///< in the step that ends
@@ -230,7 +266,7 @@ private:
     [[nodiscard]] double force_across(NodePair nodes, size_t axis, double weight) const;
     bool presses(const Wall& wall, size_t axis, int32_t inwards, NodePair nodes, double dt);
     void join_contacts(NodePair nodes);
-    void rub(size_t node, double dt, const ImpulseAnswer& answer);
+    void rub(size_t node, double dt, const ImpulseAnswers& answers);
     void fold_momenta(NodePair nodes, const Mirror& mirror, const Mirror& even);
     void meet_contacts();
     void fold_momenta();
@@ -249,16 +285,20 @@ private:
     [[nodiscard]] double falls_on(size_t node, double up) const;
     [[nodiscard]] bool lies_still(size_t column) const;
     void cross_surface(double dt);
-    [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt);
+    [[nodiscard]] LiquidAnswer answer_of_liquid(size_t node, double dt, double lambda) const;
+    [[nodiscard]] GasAnswer answer_of_gas(size_t node, double dt, double anisotropy) const;
     void solve(size_t node, double dt, PartSums& part);
-    [[nodiscard]] double falls_more(size_t node, double pushed_up, double velocity_up) const;
+    template <class Axes>
+    void solve(const Axes& axes, size_t node, double dt, PartSums& part);
+    [[nodiscard]] double falls_more(size_t node, double lambda_down, double pushed_up, double velocity_up) const;
     [[nodiscard]] GroundEdge edge_at(size_t node) const;
     [[nodiscard]] NodeVector drive_at(size_t node) const;
     [[nodiscard]] size_t into_ground(size_t node, const NodeVector& outwards) const;
     [[nodiscard]] double wetted_share(size_t node) const;
     [[nodiscard]] double gas_distance(size_t node, const GroundEdge& edge) const;
-    void breathe(size_t node, double dt, const GroundEdge& edge, const GasAnswer& answer, const NodeVector& pushed,
-                 const NodeVector& through, PartSums& part);
+    template <class Axes>
+    void breathe(const Axes& axes, size_t node, double dt, const GroundEdge& edge, const PhaseAnswers<Axes>& answers,
+                 const NodeVector& pushed, const NodeVector& through, PartSums& part);
     void mirror(NodePair nodes, const Mirror& mirror, const Mirror& even);
     void mirror();
     void mirror_part(size_t part);

@@ -24,6 +24,12 @@ void add_mirrored(NodeMoments& inside, const Mirror& mirror, const NodeMoments& 
     inside.xy += mirror.x * mirror.y * beyond.xy;
 }
 
+/// The mirror turns the bedding's dip about.
+void add_mirrored_bedding(NodeVector& inside, const Mirror& mirror, const NodeVector& beyond) {
+    inside.x += beyond.x;
+    inside.y += mirror.x * mirror.y * beyond.y;
+}
+
 void add(NodeMeans& inside, const NodeMeans& beyond) {
     inside.push += beyond.push;
     inside.permeability += beyond.permeability;
@@ -191,6 +197,10 @@ void GridMixture<has_gas, exchanges>::fold_forces(NodePair nodes, const Mirror& 
     gradients[beyond] = {};
     add(means[inside], means[beyond]);
     means[beyond] = {};
+    if (!anisotropy.empty()) {
+        add_mirrored_bedding(anisotropy[inside], even, anisotropy[beyond]);
+        anisotropy[beyond] = {};
+    }
     if (!moments.empty()) {
         add_mirrored(moments[inside], even, moments[beyond]);
         add_mirrored(places[inside], even, places[beyond]);
@@ -233,7 +243,7 @@ void GridMixture<has_gas, exchanges>::fold_forces_of(size_t part) {
 /// Friction along walls takes at most its coefficient times the impulse that presses the skeleton on them: the whole ground's, less what the pores' fluid
 /// bears there; suction presses nothing.
 template <bool has_gas, bool exchanges>
-void GridMixture<has_gas, exchanges>::rub(size_t node, double dt, const ImpulseAnswer& answer) {
+void GridMixture<has_gas, exchanges>::rub(size_t node, double dt, const ImpulseAnswers& answers) {
     NodeVector &solid = velocity[node], &liquid = liquid_of(fluid_velocity[node]), &through = liquid_of(flux[node]);
     const auto for_each_contact = [&](const auto& use) {
         for (int32_t number = contact_at_[node]; number >= 0; number = contacts_[static_cast<size_t>(number)].other)
@@ -243,25 +253,28 @@ void GridMixture<has_gas, exchanges>::rub(size_t node, double dt, const ImpulseA
         const auto across = contact.axis == 0 ? &NodeVector::x : &NodeVector::y;
         const double height = contact.axis == 0 ? height_of(node) : contact.wall->place;
         double momentum_left = contact.solid * solid.*across + contact.liquid * liquid.*across;
-        double pore_pressure = std::max(answer.head - liquid_density * gravity * height, 0.0);
+        double pore_pressure = std::max(answers.head - liquid_density * gravity * height, 0.0);
         if constexpr (has_gas) {
             momentum_left += contact.gas * fluid_velocity[node].gas.*across;
-            if (answer.gas_density > 0) pore_pressure = gas.pressure(answer.gas_potential - gravity * height);
+            if (answers.gas_density > 0) pore_pressure = gas.pressure(answers.gas_potential - gravity * height);
         }
         const double impulse = contact.inwards * (momentum_left - contact.pushed - dt * contact.force);
         contact.pressing = std::max(impulse - dt * pore_pressure * contact.area, 0.0);
     });
     for_each_contact([&](const Contact& contact) {
         const auto along = contact.axis == 0 ? &NodeVector::y : &NodeVector::x;
+        const ImpulseAnswer& answer = contact.axis == 0 ? answers.y : answers.x;
         const double change =
             slowed(solid.*along, contact.wall->friction * contact.pressing / answer.mass) - solid.*along;
+        NodeVector own;
+        own.*along = 1;
+        const auto follow = [&](NodeVector& fluid, NodeVector& flux, const NodeVector& follows, double density) {
+            fluid = {fluid.x + follows.x * change, fluid.y + follows.y * change};
+            flux = {flux.x + density * (follows.x - own.x) * change, flux.y + density * (follows.y - own.y) * change};
+        };
         solid.*along += change;
-        liquid.*along += answer.liquid_follows * change;
-        through.*along += answer.liquid_density * (answer.liquid_follows - 1) * change;
-        if constexpr (has_gas) {
-            fluid_velocity[node].gas.*along += answer.gas_follows * change;
-            flux[node].gas.*along += answer.gas_density * (answer.gas_follows - 1) * change;
-        }
+        follow(liquid, through, answer.liquid, answers.liquid_density);
+        if constexpr (has_gas) follow(fluid_velocity[node].gas, flux[node].gas, answer.gas, answers.gas_density);
     });
 }
 
@@ -292,21 +305,21 @@ template void GridMixture<false>::fold_momenta();
 template void GridMixture<false>::fold_momenta_of(size_t part);
 template void GridMixture<false>::fold_forces(double dt);
 template void GridMixture<false>::fold_forces_of(size_t part);
-template void GridMixture<false>::rub(size_t node, double dt, const ImpulseAnswer& answer);
+template void GridMixture<false>::rub(size_t node, double dt, const ImpulseAnswers& answers);
 template void GridMixture<false>::mirror();
 template void GridMixture<false>::mirror_part(size_t part);
 template void GridMixture<true>::fold_momenta();
 template void GridMixture<true>::fold_momenta_of(size_t part);
 template void GridMixture<true>::fold_forces(double dt);
 template void GridMixture<true>::fold_forces_of(size_t part);
-template void GridMixture<true>::rub(size_t node, double dt, const ImpulseAnswer& answer);
+template void GridMixture<true>::rub(size_t node, double dt, const ImpulseAnswers& answers);
 template void GridMixture<true>::mirror();
 template void GridMixture<true>::mirror_part(size_t part);
 template void GridMixture<true, true>::fold_momenta();
 template void GridMixture<true, true>::fold_momenta_of(size_t part);
 template void GridMixture<true, true>::fold_forces(double dt);
 template void GridMixture<true, true>::fold_forces_of(size_t part);
-template void GridMixture<true, true>::rub(size_t node, double dt, const ImpulseAnswer& answer);
+template void GridMixture<true, true>::rub(size_t node, double dt, const ImpulseAnswers& answers);
 template void GridMixture<true, true>::mirror();
 template void GridMixture<true, true>::mirror_part(size_t part);
 

@@ -205,6 +205,19 @@ inline void scatter_value(const Grid& grid, size_t count, const SplineBlock& spl
     }
 }
 
+/// Two numbers of the points, likewise.
+inline void scatter_values(const Grid& grid, size_t count, const SplineBlock& spline, const VelocityBlock& value,
+                           std::vector<NodeVector>& field) {
+    NodePatch<Pair, true> patch(&field.data()->x, grid, spline.first[0]);
+    for (size_t k = 0; k < count; ++k) {
+        patch.move_to(spline.first[k]);
+        for (size_t j = 0; j < 3; ++j) {
+            const Pair row = spline.value_y[j][k] * Pair(value.x[k], value.y[k]);
+            for (size_t i = 0; i < 3; ++i) patch.node[j][i] += spline.value_x[i][k] * row;
+        }
+    }
+}
+
 /// What a point gives to the nodes: momentum, mass and one number more, and the momentum's change along x and y over one cell. Numbers are written alone
 /// and read by fours, a block later: sooner, the processor would wait for them.
 struct Gift {
