@@ -392,7 +392,8 @@ void DynamicGround::look(const Moving& motion, double time) {
     const FreePoints& points = motion.points();
     check_pores(time);
     if (static_cast<double>(motion.grid().nodes()) > most_nodes)
-        stop(time, "the ground spread over more than " + value_text(most_nodes) + " cells");
+        stop(time, "the ground spread over more than " + value_text(most_nodes) +
+                       " cells; dynamics.xFrom, xTo, yFrom and yTo end the background");
     peak_velocity_ = std::max(peak_velocity_, largest_speed(points));
     if (!may_rest_) return;
     const double kinetic = motion.energies().kinetic;
