@@ -4,7 +4,7 @@
 // odd ones, and every node receives its shares in the same order for any number of threads.
 //
 // A region is as wide as a strip is high. Where all points of a region and of its neighbours have been slower than the rest speed for a while, its
-// points are held: they lie still, with their stress and their water, and are not handled. Nodes that they reach stand still.
+// points are held: they lie still, with their stress and their water, and are not handled.
 #pragma once
 
 #include "background/grid.hpp"
@@ -64,6 +64,11 @@ public:
     template <class Handle>
     void for_each_strip(const Handle& handle) const;
 
+    /// handle(points) for all that are held.
+    template <class Handle>
+    void for_each_held(const Handle& handle) const;
+    [[nodiscard]] bool holds_any() const { return !held_.empty(); }
+
 private:
     bool fit(const FreePoints& points, Grid& grid) const;
     void count_slow(FreePoints& points) const;
@@ -92,6 +97,16 @@ void Arrangement::for_each_strip(const Handle& handle) const {
             const size_t strip = 2 * s + parity;
             for (size_t run = run_start_[strip]; run < run_start_[strip + 1]; ++run) handle(runs_[run]);
         });
+    }
+}
+
+template <class Handle>
+void Arrangement::for_each_held(const Handle& handle) const {
+    for (size_t p = 0; p < held_.size(); ++p) {
+        if (held_[p] == 0) continue;
+        const size_t first = p;
+        while (p < held_.size() && held_[p] != 0) ++p;
+        handle(Strip{first, p});
     }
 }
 

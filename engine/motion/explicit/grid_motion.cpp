@@ -55,7 +55,8 @@ void GridMotion::begin_step() {
         for_each_upright_mirror_of(part, come_inside);
         for_each_node_of(part, [&](size_t node) {
             force[node].y -= gravity * momentum[node].mass;
-            const double inverse = momentum[node].mass > 0 && !is_still(node) ? 1 / momentum[node].mass : 0;
+            if (!held.empty() && momentum[node].mass > 0) momentum[node].mass += held[node].mass;
+            const double inverse = momentum[node].mass > 0 ? 1 / momentum[node].mass : 0;
             velocity[node] = velocity_of(momentum[node].x, momentum[node].y, inverse);
             bound.add(momentum[node].mass, velocity[node]);
         });
@@ -78,7 +79,8 @@ void GridMotion::end_step(double dt) {
     for_each_part([&](size_t part, SpeedBound& bound) {
         for_each_upright_mirror_of(part, come_inside);
         for_each_node_of(part, [&](size_t node) {
-            const double response = momentum[node].mass > 0 && !is_still(node) ? dt / momentum[node].mass : 0;
+            const double response = momentum[node].mass > 0 ? dt / momentum[node].mass : 0;
+            if (!held.empty()) force[node] = {force[node].x + held[node].x, force[node].y + held[node].y};
             velocity[node].x += response * force[node].x;
             velocity[node].y += response * force[node].y;
             if (!rubs) finish(node, bound);

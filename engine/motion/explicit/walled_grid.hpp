@@ -63,11 +63,8 @@ inline Mirror mirror_of(const Wall& wall, size_t axis) {
 struct WalledGrid {
     Grid grid;
     Walls walls;
-    std::vector<Span> spans;     ///< one a row: outside them all is zero
-    std::vector<uint8_t> still;  ///< one a node: not 0 where held points reach it, and nothing moves; empty: none is
+    std::vector<Span> spans;  ///< one a row: outside them all is zero
     Threads threads;
-
-    [[nodiscard]] bool is_still(size_t node) const { return !still.empty() && still[node] != 0; }
 
     [[nodiscard]] bool rubs_along_walls() const {
         const auto rubs = [](const Wall& wall) { return wall.kind == WallKind::friction; };
