@@ -109,8 +109,10 @@ void check_between_ends(const Dynamics& dynamics, const Mesh& mesh) {
 }
 
 std::vector<int32_t> points_at_ends(const Dynamics& dynamics, const FreePoints& points, double cell_size) {
-    const double near = dynamics.at_ends == EndPolicy::stop ? cell_size : 0.0;
     std::vector<int32_t> found;
+    const std::array ends{dynamics.x_from, dynamics.x_to, dynamics.y_from, dynamics.y_to};
+    if (std::none_of(ends.begin(), ends.end(), [](double end) { return std::isfinite(end); })) return found;
+    const double near = dynamics.at_ends == EndPolicy::stop ? cell_size : 0.0;
     const double* x = points[position_x];
     const double* y = points[position_y];
     for (size_t p = 0; p < points.count; ++p) {
