@@ -79,14 +79,15 @@ Background make_background(const Scene& scene, const Mesh& mesh) {
              wall_at_side(scene, mesh, side_base)};
     const auto [left, right] = reach(mesh, 0);
     const auto [low, high] = reach(mesh, 1);
-    if (dynamics.at_ends ==
-        EndPolicy::stop) {  // smooth, and not within ground that has moved since it lay between the ends
+    const bool stops = dynamics.at_ends == EndPolicy::stop;
+    // By smooth walls, and not within ground that has moved since it lay between the ends.
+    if (stops) {
         if (std::isfinite(dynamics.x_from)) walls.left = {WallKind::friction, std::min(dynamics.x_from, left), 0};
         if (std::isfinite(dynamics.x_to)) walls.right = {WallKind::friction, std::max(dynamics.x_to, right), 0};
         if (std::isfinite(dynamics.y_from)) walls.base = {WallKind::friction, std::min(dynamics.y_from, low), 0};
     }
     background.cell_size = fit_cell_size(dynamics.cell_size, walls);
-    if (dynamics.at_ends == EndPolicy::stop && std::isfinite(dynamics.y_to)) {
+    if (stops && std::isfinite(dynamics.y_to)) {
         const double cells = (std::max(dynamics.y_to, high) - walls.base.place) / background.cell_size;
         walls.top = {WallKind::friction, walls.base.place + background.cell_size * std::ceil(cells * (1 - 1e-12)), 0};
     }

@@ -12,8 +12,8 @@
 namespace talus {
 
 struct Background {
-    double cell_size =
-        0;        ///< m; at most the scene's, and such that two upright walls lie a whole number of cells apart
+    /// At most the scene's, and such that two upright walls lie a whole number of cells apart, m.
+    double cell_size = 0;
     Walls walls;  ///< sides that hold the ground, and ends that stop it
 };
 

@@ -116,3 +116,53 @@ TEST_CASE("ground that rubs on both walls of a corner gains no energy there") {
     for (int64_t step = 1; step <= 500; ++step) motion.step(dt, step == 500);
     CHECK(energy() - start < 0.02 * motion.energies().elastic);
 }
+
+TEST_CASE("ground at rest is held until something comes near, and nothing else is changed by that") {
+    const double cell_size = 0.1;
+    const auto collide = [&](double rest_speed, int32_t threads, bool is_put_back) {
+        FreePoints points = block_of_points(cell_size, 0, 0, 20, 10);
+        const FreePoints other = block_of_points(cell_size, 0, 0, 5, 10);
+        const size_t resting = points.count;
+        points.assign(resting + other.count, dry_fields);
+        const FreePoints block = block_of_points(cell_size, 0, 0, 20, 10);
+        for (size_t p = 0; p < points.count; ++p) {
+            const FreePoints& from = p < resting ? block : other;
+            const size_t k = p < resting ? p : p - resting;
+            for (const PointField name : {position_x, position_y, point_volume, solid_mass})
+                points[name][p] = from[name][k];
+            if (p < resting) continue;
+            points[position_x][p] += 6;
+            points[velocity_x][p] = -1;
+        }
+        const std::vector<ExplicitSoil> soils{{elasticity(1e6, 0.3)}};
+        const auto motion_of = [&](FreePoints of) {
+            return ExplicitMotion(cell_size, {}, 0, soils, std::move(of), threads, rest_speed);
+        };
+        ExplicitMotion motion = motion_of(std::move(points));
+        const auto run = [&](int steps) {
+            for (int i = 1; i <= steps; ++i) motion.step(1.5e-3, i % 16 == 0);
+        };
+        run(1600);  // 2.4 s
+        int32_t quiet = 0;
+        for (const int32_t substeps : motion.points().quiet) quiet += substeps >= 1000 ? 1 : 0;
+        CHECK(quiet == (rest_speed > 0 ? static_cast<int32_t>(resting) : 0));
+        if (is_put_back) motion = motion_of(motion.points());
+        motion.restart();
+        run(1600);
+        return motion.points();
+    };
+    const FreePoints free = collide(0, 1, false), held = collide(1e-3, 1, false);
+    std::vector<double> place(2 * free.count), held_place(2 * free.count);
+    for (size_t p = 0; p < free.count; ++p) {
+        const auto at = [](const FreePoints& points, size_t k) { return static_cast<size_t>(points.number[k]); };
+        place[at(free, p)] = free[position_x][p];
+        held_place[at(held, p)] = held[position_x][p];
+    }
+    CHECK(place[0] < -0.1);  // pushed by the impact
+    for (size_t p = 0; p < place.size(); ++p) CHECK(std::abs(held_place[p] - place[p]) < 1e-3 * 0.02);
+    const FreePoints two = collide(1e-3, 2, false), again = collide(1e-3, 1, true);
+    for (size_t f = 0; f < dry_fields; ++f) {
+        CHECK(held.field[f] == two.field[f]);
+        CHECK(held.field[f] == again.field[f]);
+    }
+}

@@ -6,6 +6,7 @@
 #include <cmath>
 
 namespace talus {
+
 ExplicitMotion::ExplicitMotion(double cell_size, const Walls& walls, double gravity, std::vector<ExplicitSoil> soils,
                                FreePoints points, int32_t threads, double rest_speed)
     : soils_(std::move(soils)), points_(std::move(points)), arrangement_(Threads(threads), rest_speed) {
