@@ -50,7 +50,6 @@ bool Arrangement::arrange(FreePoints& points, Grid& grid) {
         held_ = std::move(held);
     }
     find_runs();
-    find_spans(points, grid);
     drift_ = 0;
     return grew;
 }
@@ -98,13 +97,12 @@ void Arrangement::count_slow(FreePoints& points) const {
     });
 }
 
-void Arrangement::hold(FreePoints& points, const Grid& grid) {
+void Arrangement::hold(FreePoints& points) {
     if (!(rest_speed_ > 0)) return;
     points.quiet.resize(points.count);
     substeps_ = 0;
     held_ = find_held(points);
     find_runs();
-    find_spans(points, grid);
     const auto stop = [&](PointField first, PointField last) {
         if (points.field[first].empty()) return;
         for (size_t name = first; name <= last; ++name) {
@@ -149,18 +147,20 @@ std::vector<bool> Arrangement::find_quiet_regions(const FreePoints& points) cons
     return quiet;
 }
 
-std::vector<uint8_t> Arrangement::still_nodes(const FreePoints& points, const Grid& grid) const {
-    if (held_.empty()) return {};
-    std::vector<uint8_t> still(grid.nodes(), 0);
+void Arrangement::tell(const FreePoints& points, WalledGrid& nodes) const {
+    const Grid& grid = nodes.grid;
+    nodes.spans = find_spans(points, grid);
+    nodes.still.clear();
+    if (held_.empty()) return;
+    nodes.still.assign(grid.nodes(), 0);
     const auto columns = static_cast<size_t>(grid.cells[0]);
     for (size_t p = 0; p < held_.size(); ++p) {
         if (held_[p] == 0) continue;
         const auto row = static_cast<size_t>(grid.cell_of(points[position_y][p], 1));
         const auto column = static_cast<size_t>(grid.cell_of(points[position_x][p], 0));
         for (size_t near = row - 1; near <= row + 1; ++near)
-            std::fill_n(still.begin() + static_cast<std::ptrdiff_t>(near * columns + column - 1), 3, uint8_t{1});
+            std::fill_n(nodes.still.begin() + static_cast<std::ptrdiff_t>(near * columns + column - 1), 3, uint8_t{1});
     }
-    return still;
 }
 
 void Arrangement::find_runs() {
@@ -179,7 +179,7 @@ void Arrangement::find_runs() {
     }
 }
 
-void Arrangement::find_spans(const FreePoints& points, const Grid& grid) {
+std::vector<Span> Arrangement::find_spans(const FreePoints& points, const Grid& grid) const {
     std::vector<Span> reached(static_cast<size_t>(grid.cells[1]), {grid.cells[0], 0});
     const auto widen = [&](Strip strip) {
         for (size_t p = strip.first; p < strip.last; ++p) {
@@ -191,7 +191,7 @@ void Arrangement::find_spans(const FreePoints& points, const Grid& grid) {
     };
     for (const Strip& run : runs_) widen(run);
     constexpr int32_t reach = margin + 1;
-    spans_.assign(reached.size(), {});
+    std::vector<Span> spans(reached.size());
     for (int32_t row = 0; row < grid.cells[1]; ++row) {
         Span span{grid.cells[0], 0};
         for (int32_t near = std::max(0, row - reach); near <= std::min(grid.cells[1] - 1, row + reach); ++near) {
@@ -199,9 +199,9 @@ void Arrangement::find_spans(const FreePoints& points, const Grid& grid) {
             span.last = std::max(span.last, reached[static_cast<size_t>(near)].last);
         }
         if (span.first >= span.last) continue;
-        spans_[static_cast<size_t>(row)] = {std::max(0, span.first - reach),
-                                            std::min(grid.cells[0], span.last + reach)};
+        spans[static_cast<size_t>(row)] = {std::max(0, span.first - reach), std::min(grid.cells[0], span.last + reach)};
     }
+    return spans;
 }
 
 }  // namespace talus

@@ -8,8 +8,8 @@
 #pragma once
 
 #include "background/grid.hpp"
-#include "motion/explicit/grid_motion.hpp"
 #include "motion/explicit/threads.hpp"
+#include "motion/explicit/walled_grid.hpp"
 #include "points/free_points.hpp"
 
 #include <algorithm>
@@ -52,22 +52,14 @@ public:
     bool look_for_rest(FreePoints& points);
 
     /// Finds which points are held, from their counts alone; they have no velocity from then on.
-    void hold(FreePoints& points, const Grid& grid);
+    void hold(FreePoints& points);
 
-    /// Of nodes that points reach which are not held.
-    [[nodiscard]] const std::vector<Span>& spans() const { return spans_; }
-
-    /// One a node: not 0 where points reach it that are held; empty where none is.
-    [[nodiscard]] std::vector<uint8_t> still_nodes(const FreePoints& points, const Grid& grid) const;
+    /// Tells the nodes which of them points reach that are not held, and which held ones do.
+    void tell(const FreePoints& points, WalledGrid& nodes) const;
 
     /// handle(points), for all of a strip that are not held, in as many threads as there are.
     template <class Handle>
     void for_each_strip(const Handle& handle) const;
-
-    /// handle(points) for all that are held.
-    template <class Handle>
-    void for_each_held(const Handle& handle) const;
-    [[nodiscard]] bool holds_any() const { return !held_.empty(); }
 
 private:
     bool fit(const FreePoints& points, Grid& grid) const;
@@ -75,7 +67,7 @@ private:
     [[nodiscard]] std::vector<bool> find_quiet_regions(const FreePoints& points) const;
     [[nodiscard]] std::vector<uint8_t> find_held(const FreePoints& points) const;
     void find_runs();
-    void find_spans(const FreePoints& points, const Grid& grid);
+    [[nodiscard]] std::vector<Span> find_spans(const FreePoints& points, const Grid& grid) const;
 
     Threads threads_;
     double rest_speed_;  // m/s
@@ -84,9 +76,8 @@ private:
     std::vector<uint8_t> held_;      // one a point; empty: none is
     std::vector<Strip> runs_;        // of points that are not held, strip by strip
     std::vector<size_t> run_start_;  // strips + 1
-    std::vector<Span> spans_;
-    double drift_ = 0;      // cells that a point may have moved since it was arranged
-    int32_t substeps_ = 0;  // since rest was looked for
+    double drift_ = 0;               // cells that a point may have moved since it was arranged
+    int32_t substeps_ = 0;           // since rest was looked for
 };
 
 template <class Handle>
@@ -97,16 +88,6 @@ void Arrangement::for_each_strip(const Handle& handle) const {
             const size_t strip = 2 * s + parity;
             for (size_t run = run_start_[strip]; run < run_start_[strip + 1]; ++run) handle(runs_[run]);
         });
-    }
-}
-
-template <class Handle>
-void Arrangement::for_each_held(const Handle& handle) const {
-    for (size_t p = 0; p < held_.size(); ++p) {
-        if (held_[p] == 0) continue;
-        const size_t first = p;
-        while (p < held_.size() && held_[p] != 0) ++p;
-        handle(Strip{first, p});
     }
 }
 

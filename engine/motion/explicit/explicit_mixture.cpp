@@ -108,7 +108,7 @@ void ExplicitMixture<filling>::start_anew() {
     nodes_.start_grid();
     restarted_ = true;
     arrange_points();
-    arrangement_.hold(points_, nodes_.grid);
+    arrangement_.hold(points_);
     take_arrangement();
     arrangement_.for_each_strip([this](Strip strip) { give(strip); });
     nodes_.begin_step();
@@ -645,8 +645,7 @@ void ExplicitMixture<filling>::arrange_points() {
 
 template <Filling filling>
 void ExplicitMixture<filling>::take_arrangement() {
-    nodes_.spans = arrangement_.spans();
-    nodes_.still = arrangement_.still_nodes(points_, nodes_.grid);
+    arrangement_.tell(points_, nodes_);
     std::fill(nodes_.surroundings.begin(), nodes_.surroundings.end(), NodeSurroundings{});
 }
 

@@ -125,46 +125,13 @@ void ExplicitMotion::arrange_points() {
         nodes_.momentum.assign(nodes_.grid.nodes(), {});
         nodes_.force.assign(nodes_.grid.nodes(), {});
     }
-    take_arrangement();
+    arrangement_.tell(points_, nodes_);
     find_wave_speed();
 }
 
 void ExplicitMotion::hold_points() {
-    arrangement_.hold(points_, nodes_.grid);
-    take_arrangement();
-}
-
-/// With what held points do to the nodes, which is found once.
-void ExplicitMotion::take_arrangement() {
-    nodes_.spans = arrangement_.spans();
-    nodes_.held.clear();
-    if (!arrangement_.holds_any()) return;
-    const size_t nodes = nodes_.grid.nodes();
-    nodes_.held.resize(nodes);
-    std::vector<NodeVector> force(nodes);
-    arrangement_.for_each_held([&](Strip strip) { give_held(strip, force); });
-    for (size_t i = 0; i < nodes; ++i) {
-        nodes_.held[i].x = force[i].x;
-        nodes_.held[i].y = force[i].y - nodes_.gravity * nodes_.held[i].mass;
-    }
-    const auto come_inside = [this](NodePair pair, const Mirror& mirror, const Mirror&) {
-        move_inside(nodes_.held[pair.inside], nodes_.held[pair.beyond], mirror);
-    };
-    nodes_.for_each_level_mirror(come_inside);
-    nodes_.for_each_upright_mirror(come_inside);
-}
-
-void ExplicitMotion::give_held(Strip strip, std::vector<NodeVector>& force) {
-    SplineBlock spline;
-    GiftBlock gift;
-    for (size_t first = strip.first; first < strip.last; first += block_size) {
-        const size_t count = std::min(block_size, strip.last - first);
-        spline.find(nodes_.grid, points_[position_x] + first, points_[position_y] + first, count);
-        for (size_t k = 0; k < count; ++k) gift[k].set(points_[solid_mass][first + k], {0, 0}, {0, 0}, {0, 0});
-        give_momentum(nodes_.grid, count, spline, gift, nodes_.held);
-        scatter_force(nodes_.grid, count, spline, points_[point_volume] + first, points_[stress_xx] + first,
-                      points_[stress_yy] + first, points_[stress_xy] + first, force);
-    }
+    arrangement_.hold(points_);
+    arrangement_.tell(points_, nodes_);
 }
 
 /// Of the points as they are: ground that dilates becomes lighter, and its waves faster.

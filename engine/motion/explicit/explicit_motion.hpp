@@ -59,8 +59,6 @@ public:
 private:
     void arrange_points();
     void hold_points();
-    void take_arrangement();
-    void give_held(Strip strip, std::vector<NodeVector>& force);
     void find_wave_speed();
     void stress_and_forces(Strip strip, double dt);
     template <bool keeps>

@@ -228,9 +228,6 @@ struct GridMixture : WalledGrid {
     double run_off = 0;            ///< kg, likewise
     double seepage = 0;            ///< kg, likewise; negative where an immersed ground drank
 
-    std::vector<uint8_t> still;  ///< one a node: not 0 where held points reach it, and nothing moves; empty: none is
-    [[nodiscard]] bool is_still(size_t node) const { return !still.empty() && still[node] != 0; }
-
     NodeGas gas;          ///< empty where it is at rest
     NodeSolutes solutes;  ///< empty where fluids exchange nothing
 

@@ -55,8 +55,7 @@ void GridMotion::begin_step() {
         for_each_upright_mirror_of(part, come_inside);
         for_each_node_of(part, [&](size_t node) {
             force[node].y -= gravity * momentum[node].mass;
-            if (!held.empty() && momentum[node].mass > 0) momentum[node].mass += held[node].mass;
-            const double inverse = momentum[node].mass > 0 ? 1 / momentum[node].mass : 0;
+            const double inverse = momentum[node].mass > 0 && !is_still(node) ? 1 / momentum[node].mass : 0;
             velocity[node] = velocity_of(momentum[node].x, momentum[node].y, inverse);
             bound.add(momentum[node].mass, velocity[node]);
         });
@@ -79,8 +78,7 @@ void GridMotion::end_step(double dt) {
     for_each_part([&](size_t part, SpeedBound& bound) {
         for_each_upright_mirror_of(part, come_inside);
         for_each_node_of(part, [&](size_t node) {
-            const double response = momentum[node].mass > 0 ? dt / momentum[node].mass : 0;
-            if (!held.empty()) force[node] = {force[node].x + held[node].x, force[node].y + held[node].y};
+            const double response = momentum[node].mass > 0 && !is_still(node) ? dt / momentum[node].mass : 0;
             velocity[node].x += response * force[node].x;
             velocity[node].y += response * force[node].y;
             if (!rubs) finish(node, bound);
@@ -110,6 +108,10 @@ void GridMotion::slide(bool with_friction) {
 /// its mirror images that the mirrored ground would have, less what the friction of either wall takes off along it; the walls leave that alone.
 void GridMotion::meet(const Corner& corner, bool with_friction) {
     constexpr std::array<Mirror, 4> mirrors{{{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+    if (is_still(corner.nodes[0])) {
+        for (const size_t node : corner.nodes) velocity[node] = {};
+        return;
+    }
     double mass = 0;
     NodeVector sum, mirrored, inside;  // of momentum; of its mirror images inside; of mass times the mirror
     for (size_t k = 0; k < 4; ++k) {
@@ -133,6 +135,10 @@ void GridMotion::meet(const Corner& corner, bool with_friction) {
 /// Ground that runs into a wall: the two nodes get the one velocity that the mirrored ground would have, and along the wall the momentum
 /// that friction leaves of theirs.
 void GridMotion::meet(const Wall& wall, size_t axis, double outwards, NodePair nodes, bool with_friction) {
+    if (is_still(nodes.inside)) {
+        velocity[nodes.beyond] = {};
+        return;
+    }
     const double mass_inside = momentum[nodes.inside].mass, mass_beyond = momentum[nodes.beyond].mass;
     const double mass = mass_inside + mass_beyond;
     if (!(mass > 0)) return;

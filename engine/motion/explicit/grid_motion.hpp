@@ -113,8 +113,6 @@ struct GridMotion : WalledGrid {
     std::vector<NodeMomentum> momentum;  ///< of the points where they came to lie
     std::vector<NodeVector> velocity;
     std::vector<NodeVector> force;  ///< the weight at first, then the stress's too, N
-    std::vector<NodeMomentum>
-        held;  ///< of points that are held: the mass, and x, y, force of their stress and weight, N; empty: none
 
     /// Velocities from momenta, and the nodes' weight as their first force.
     void begin_step();

@@ -63,8 +63,11 @@ inline Mirror mirror_of(const Wall& wall, size_t axis) {
 struct WalledGrid {
     Grid grid;
     Walls walls;
-    std::vector<Span> spans;  ///< one a row: outside them all is zero
+    std::vector<Span> spans;     ///< one a row: outside them all is zero
+    std::vector<uint8_t> still;  ///< one a node: not 0 where held points reach it, and nothing moves; empty: none is
     Threads threads;
+
+    [[nodiscard]] bool is_still(size_t node) const { return !still.empty() && still[node] != 0; }
 
     [[nodiscard]] bool rubs_along_walls() const {
         const auto rubs = [](const Wall& wall) { return wall.kind == WallKind::friction; };
@@ -117,8 +120,6 @@ struct WalledGrid {
     void for_each_level_mirror(const Use& use) const;
     template <class Use>
     void for_each_upright_mirror_of(size_t part, const Use& use) const;
-    template <class Use>
-    void for_each_upright_mirror(const Use& use) const;
 };
 
 template <class Use>
@@ -229,11 +230,6 @@ void WalledGrid::for_each_upright_mirror_of(size_t part, const Use& use) const {
     };
     use_along(walls.left, 1);
     use_along(walls.right, -1);
-}
-
-template <class Use>
-void WalledGrid::for_each_upright_mirror(const Use& use) const {
-    for (size_t part = 0; part < parts(); ++part) for_each_upright_mirror_of(part, use);
 }
 
 }  // namespace talus
