@@ -166,17 +166,25 @@ void check_solid(const Check& check, const Solid& solid, bool is_dynamic) {
     check.at("tensileStrength").unused(std::isfinite(solid.tensile_strength), model);
 }
 
+/// Points find their suction by their saturation.
+void check_fall(const Check& check, const Retention& retention) {
+    const bool is_flat = retention.saturation.size() > 1 && retention.saturation.back() == retention.saturation.front();
+    check.at("saturation").require(!is_flat, "does not fall; must fall where the regime is not quasiStatic");
+}
+
 void check_soil(const Check& check, const Soil& soil, const Physics& physics) {
     check.at("porosity").needed(given(soil.porosity), "every soil");
+    const bool moves = physics.regime != MotionRegime::quasi_static;
     if (physics.water) {
         const Check hydraulics = check.at("hydraulics");
         check_retention(hydraulics.at("retention"), soil.hydraulics.retention);
+        if (moves) check_fall(hydraulics.at("retention"), soil.hydraulics.retention);
         check_permeability(hydraulics.at("relativePermeability"), soil.hydraulics);
         check_conductivity(hydraulics.at("conductivity"), soil.hydraulics.conductivity);
     }
     if (physics.deforming) {
         check.at("dryDensity").needed(given(soil.dry_density), "a skeleton that deforms");
-        check_solid(check.at("solid"), soil.solid, physics.regime != MotionRegime::quasi_static);
+        check_solid(check.at("solid"), soil.solid, moves);
     }
 }
 
