@@ -27,27 +27,40 @@ def scene_of(rest_speed, is_moist):
     return scene
 
 
-def measure(rest_speed, is_moist):
-    """Seconds a substep, points and those held, once the floor is quiet; and what came of the slide."""
-    engine = talus.Engine(talus.Scene.from_json(scene_of(rest_speed, is_moist)))
-    seconds, substeps, held = 0.0, 0, []
-    for step in range(STEPS):
+class Slide:
+    """The slide with a rest speed, m/s, or none; what its steps took from SETTLED on, once the floor is quiet."""
+
+    def __init__(self, rest_speed, is_moist):
+        self.engine = talus.Engine(talus.Scene.from_json(scene_of(rest_speed, is_moist)))
+        self.points = self.engine.describe()["points"]
+        self.seconds, self.substeps, self.held_points = 0.0, 0, 0.0
+
+    def step(self, is_timed):
         begun = time.process_time()
-        report = engine.step(STEP)
-        if step < SETTLED:
-            continue
-        seconds += time.process_time() - begun
-        substeps += report["motion_substeps"]
-        held.append(int((numpy.abs(engine.read("velocity")).max(axis=1) == 0).sum()))
-    return {"points": engine.describe()["points"], "held": sum(held) / len(held), "seconds_a_substep": seconds / substeps,
-            "run_out": report["run_out"], "dissipated_energy": report["dissipated_energy"]}
+        self.report = self.engine.step(STEP)
+        if not is_timed:
+            return
+        self.seconds += time.process_time() - begun
+        self.substeps += self.report["motion_substeps"]
+        self.held_points += (numpy.abs(self.engine.read("velocity")).max(axis=1) == 0).sum() * self.report["motion_substeps"]
+
+    @property
+    def held(self):
+        return self.held_points / self.substeps
+
+    @property
+    def seconds_a_substep(self):
+        return self.seconds / self.substeps
 
 
 def run(is_moist):
-    """Nanoseconds of a substep of points that move and that are held; what holding changes."""
-    free, held = measure(0.0, is_moist), measure(REST_SPEED, is_moist)
-    moving = free["seconds_a_substep"] / free["points"]
-    resting = (held["seconds_a_substep"] - moving * (held["points"] - held["held"])) / held["held"]
-    changes = {name: abs(held[name] / free[name] - 1) for name in ("run_out", "dissipated_energy")}
-    return {"ground": "moist" if is_moist else "dry", "rest_speed": REST_SPEED, "points": held["points"], "held": held["held"],
+    """Nanoseconds of a substep of points that move and that are held; what holding changes. The two slides take turns: a machine's speed changes with time."""
+    free, held = Slide(0.0, is_moist), Slide(REST_SPEED, is_moist)
+    for step in range(STEPS):
+        free.step(step >= SETTLED)
+        held.step(step >= SETTLED)
+    moving = free.seconds_a_substep / free.points
+    resting = (held.seconds_a_substep - moving * (held.points - held.held)) / held.held
+    changes = {name: abs(held.report[name] / free.report[name] - 1) for name in ("run_out", "dissipated_energy")}
+    return {"ground": "moist" if is_moist else "dry", "rest_speed": REST_SPEED, "points": held.points, "held": held.held,
             "moving_ns": 1e9 * moving, "resting_ns": 1e9 * resting, "ratio": resting / moving, "changes": changes}
