@@ -2,11 +2,10 @@
 #pragma once
 
 #include "coupling/ground_state.hpp"
+#include "coupling/handover.hpp"
 #include "coupling/motion_report.hpp"
 #include "coupling/progress.hpp"
 #include "ground/mesh.hpp"
-#include "motion/explicit/explicit_mixture.hpp"
-#include "motion/explicit/explicit_motion.hpp"
 #include "points/points.hpp"
 #include "scene/scene.hpp"
 
@@ -38,20 +37,9 @@ struct EndReached {
     double absorbed;  ///< taken out, m3 per metre of thickness
 };
 
-/// What a ground of a mesh hands over to its material points.
-struct Handover {
-    std::span<const double> pressure{};       ///< at the nodes, Pa; empty: dry
-    std::span<const double> displacement{};   ///< of the nodes since the start, m; empty: none
-    std::vector<double> soil_mass{};          ///< of each soil, kg per metre of thickness; empty: as its density says
-    double water = 0;                         ///< m3 per metre of thickness; 0: as the pressures say
-    double time = 0;                          ///< when, s
-    std::span<const double> lost_strength{};  ///< of the mesh's points, share of what softening takes; empty: none
-};
-
 class DynamicGround {
 public:
-    /// Cuts the points out of the mesh; they take their stress from the mesh's points, where these have one, and what is
-    /// handed over. Throws Error(invalid_scene) where a wall is not a straight side along an axis.
+    /// As make_motion().
     DynamicGround(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Handover& handover,
                   int32_t threads);
 
@@ -103,15 +91,9 @@ public:
     [[nodiscard]] double mobilised_strength(size_t point) const;
 
 private:
-    using Mixture = ExplicitMixture<Filling::unsaturated>;
-    using ThreePhases = ExplicitMixture<Filling::three_phase>;
-    using Exchange = ExplicitMixture<Filling::exchange>;
-    using Motion = std::variant<ExplicitMotion, Mixture, ThreePhases, Exchange>;
     /// query(mixture) of ground with water, else nothing.
     template <class Query>
     auto of_mixture(const Query& query) const;
-    static Motion make_motion(const Scene& scene, const Mesh& mesh, const Points& mesh_points, const Handover& handover,
-                              int32_t threads);
     [[nodiscard]] WaterExchange exchanged_water() const;  // since the motion was begun anew
     template <class Moving>
     bool move(Moving& motion, double from, double until, const Cancelled& cancelled);
